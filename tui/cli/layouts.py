@@ -10,14 +10,17 @@ from functools import cached_property, lru_cache
 
 from pendu_tui.tui.cli.units import UNIT, split_unit
 
-NUMBER = r"[-+]?[.\d][-+.,\ded]*"
-"""What a number looks like in many languages and in Fortran; some of it may be none."""
+_DECIMALS = r"\d+,\d+(?:[eE][-+]?\d+)?(?![\d.]|,\d)"  # of many languages
+_DIGITS = r"(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?"
+_SPACED = r"[-+]?\d{1,3}[^\S\t]\d{3}\b"  # 42 001
+NUMBER = rf"[-+]?(?:\d*\.\d+[-+]\d{{3}}(?!\d)|{_DECIMALS}|{_DIGITS})"
+"""-4.52-107 is Fortran's -4.52e-107."""
 FAILED = (
     r"[-+]?(?:nan|inf(?:inity)?)(?:\([^)\s]*\)?)?|[-+]?1\.?#\w+|\*{2,}"
     r"|#¡?[A-Z/0]+[!?]|#N/?[AV]\b|Err:5\d\d"
 )
 """How programs write a number that has ended: C, Microsoft C, Fortran, spreadsheets."""
-VALUE = rf"(?P<value>{FAILED}|\d)"
+VALUE = rf"(?P<value>{FAILED}|{NUMBER})"
 
 
 @dataclass(frozen=True)
@@ -25,11 +28,11 @@ class Layout:
     """The look of a program's lines, for each that is not a plain row of the table before it.
 
     `line` is searched in the line, in any case.  Its groups say what they hold: `names` of the
-    columns below; a `row`, which may begin with words; a `value`, where each number in the line is
-    a 1, its `name`, which is Step if there is none, and perhaps its `unit`; `over`, names above a
-    line of numbers; the `place` of a column, from 1, or the `set` of xmgrace, from 0, and its
-    `label`; the `units` of its other axis; the beginning of a new run (`part`); the `end` of the
-    data, until they begin `again`; the `error` with which a program ended, if no row follows it.
+    columns below; a `row`, which may begin with words; a `value`, its `name`, which is Step if
+    there is none, and perhaps its `unit`; `over`, names above a line of numbers; the `place` of a
+    column, from 1, or the `set` of xmgrace, from 0, and its `label`; the `units` of its other axis;
+    the beginning of a new run (`part`); the `end` of the data, until they begin `again`; the
+    `error` with which a program ended, if no row follows it.
     """
 
     programs: str
@@ -142,24 +145,23 @@ LAYOUTS = (
     ),
     Layout(
         programs="JSON, an object a line",
-        line=rf'"(?P<name>(?!\d+")[^"]+)" *: *"?{VALUE}"?'
-        rf'(?: *, *"(?:\w+[_.])?units?" *: *"(?P<unit>{UNIT})"(?!.*"E))?(?=\s*[,}}])',
+        line=rf'"(?P<name>(?!\d+")[^"]+)" *: *"?{VALUE}"?(?=\s*[,}}])',
     ),
     Layout(
         programs="prints of name value",
         line=rf"(?<!\S)(?!{FAILED}(?!\S))(?:(?:INFO|DEBUG|and|has|with) +)?"
         rf"(?P<name>[A-Z]\w{{,40}}(?: [A-Z]\w{{,40}}){{,2}}) +{VALUE}[,:]?"
         r"(?=\s*$| +(?:(?:[A-Z]\w* +){1,3}(?=(?:e|energy|quantity|time|step) ))?[A-Z]\w*"
-        r" +\d,?(?:\s*$| +(?![^\d=:]{,60}[=:])[A-Z]))",
+        rf" +{NUMBER},?(?:\s*$| +(?![^\d=:]{{,60}}[=:])[A-Z]))",
     ),
     Layout(
         programs="prints of name = value or name: value; pw.x, DFTB+, NBODY6, CP2K before 8",
         line=r"(?<![\w.])(?:(?:INFO|DEBUG):? +|X {2,})?"
         r"(?P<name>(?:\|(?=\w))?[A-Z][^\s=:,;]{,40}"
         rf"(?: +(?:[A-Z]|[\[(+] ?\w)[^\s=:,;]{{,40}}){{,5}})"
-        r"(?: *= *\"?| *: +(?!\d[^\S\n]+[-+.\d])| +(?=\d(?: ?s)?:\s))"
-        rf"{VALUE} *[\[(]?(?P<unit>{UNIT})?"
-        r"(?![\w/.']|:\S|,\d| +:| *=|[\xa0\u202f]\d| ?[×*·] ?\d| x \d| ?x10)",
+        rf"(?: *= *\"?| *: +(?!{NUMBER}[^\S\n]+[-+.\d])| +(?={NUMBER}(?: ?s)?:\s))"
+        rf"(?!{_SPACED}){VALUE}"
+        rf" *[\[(]?(?P<unit>{UNIT})?(?![\w/.']|:\S|,\d| +:| *=| ?[×x*·] ?10)",
     ),
 )
 """The layouts, in the order in which they are tried on a line."""

@@ -1,8 +1,8 @@
 """Read the tables of any program: lines of text, JSON, NumPy arrays, compressed or not.
 
 1. A file becomes lines: packed files are unpacked, documents and arrays have a line a record.
-2. A line is a row like the last one; or else prints values, the same ones as all lines of its
-   shape; or else is what a layout finds in it, or words that may be a head, or a row.
+2. A line is a row like the last one; or else what a layout finds in it, such as printed values,
+   which is remembered for other lines of its shape; or else words that may be a head, or a row.
 3. Rows go to the table of the last head above them, printed values to the sheet of their run.
 4. `tables` chooses the columns of time and energy of each, and parts the series in them.
 """
@@ -19,7 +19,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from datetime import UTC, datetime
-from functools import lru_cache, partial
+from functools import partial
 from itertools import chain
 from statistics import mode
 from typing import Any
@@ -39,7 +39,7 @@ MAX_DOCUMENT = 1 << 27  # characters of JSON
 MAX_INNER = 9  # of an array in a record
 MAX_COLUMNS = 5000
 MAX_TABLES = 10_000
-MAX_SHAPES = 1000
+MAX_SHAPES = 10_000
 MIN_ABOVE = 8  # lines that tell whether the last one was cut
 MAX_ABOVE = 64
 MAX_HEADS = 20  # lines that may be the head of the next row
@@ -51,15 +51,13 @@ _UNPACK: dict[bytes, Callable[[Any], Any]] = {
 _NUMBERS = re.compile(
     r"([-+.\d](?<!\w.)[\d.]*(?<=\d)(?:\.|,\d+(?![\d.]|,\d))?(?:[eEdD][-+]?\d+|[-+]\d{3}(?!\d))?)"
 )
-"""The numbers in a line that are not part of a word.  1.2.3 is one."""
+"""The numbers in a line that are not part of a word; twice as fast as NUMBER.  1.2.3 is one."""
 _MAY_BE_MARKED = re.compile(r",\d{3}(?![\d,])")
 _MARKED = re.compile(
     r"(?:(?<=[=:\";|])|(?<=[=:] ))[-+]?[1-9]\d{0,2}(?:,\d{3})+(?=[\s\";|.]|,\s|$)"
     r"|(?<!\S)[-+]?[1-9]\d{0,2}(?:,\d{3})+(?=[\s;|]|$)"
 )
 _HAS_POINT = re.compile(r"(?<![\w.])[-+]?\d*\.(?:\d{1,2}|\d{4,})(?![\d.])")
-_IN_PARENTHESES = re.compile(r"\(\+?[\d.,]+\)")
-_SPACED = re.compile(r"(?<![\w.])[-+]?\d{1,3} \d{3}\b")  # 42 001
 _IS_FAILED = re.compile(FAILED, re.IGNORECASE)
 _WITH_UNIT = re.compile(rf"\s*({NUMBER})\s?({UNIT})\s*", re.IGNORECASE)
 _DATE = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d")
@@ -163,9 +161,7 @@ def _parsed(text: str) -> Any:
 
 
 def _is_broken(line: str) -> bool:
-    """Return whether an object is no JSON, even with other numbers, and does not go on below."""
-    if not _OBJECT.match(line):
-        return False
+    """Return whether a line is no JSON, even with other numbers, and does not go on below."""
     bare = _NUMBERS.sub("0", _IS_FAILED.sub("0", line.rstrip(" ]\r")))
     return not bare.endswith((",", "{", "[")) and _parsed(bare) is bare
 
@@ -239,16 +235,13 @@ def _arrays(stream: io.BufferedReader) -> Any:
 def number(text: str) -> float | None:
     """Return the number in a field, nan if it ended, None if there is none.
 
-    It may have a decimal comma, Fortran's D, a unit or brackets; but (42) is -42 to accountants,
-    so it is none.  A date counts in seconds since 1970, in UTC if it has no zone.
+    It may have a decimal comma, Fortran's D, a unit or brackets.  A date counts in seconds since
+    1970, in UTC if it has no zone.
     """
     try:
         return float(text.replace(",", "."))
     except ValueError:
-        text = text.strip(" \t\r\n\"'")
-    if _IN_PARENTHESES.fullmatch(text):
-        return None
-    text = text.strip("()[] \t\"'")
+        text = text.strip("()[] \t\r\n\"'")
     with suppress(ValueError):
         return float(text.replace(",", "."))
     if _IS_FAILED.fullmatch(text):
@@ -275,46 +268,8 @@ def _units_in(fields: list[str]) -> dict[int, str]:
 
 Form = tuple[str | None, int, str]
 """The delimiter of a row, None for blanks; its fields; the word with which it begins, or ""."""
-Units = tuple[str, str]
-"""The units of times and energies that have none of their own."""
-
-
-def _unit(name: str, units: Units) -> str:
-    """Return the unit of a column by its name, or else that of times or energies."""
-    time, energy = units
-    default = time if role(name)[0] == "time" else energy * is_energy(name)
-    return split_unit(name)[1] or default
-
-
-Print = tuple[str, str, str, int]
-"""A name, with \\0 for each number in it, a unit, a value, which is 1 for any number, and its place
-among the parts of the line that `_NUMBERS` divides.
-"""
-
-
-@lru_cache(MAX_SHAPES)
-def _prints(shape: str, units: Units) -> tuple[list[Print], Units]:
-    """Return what is printed in a line with \\0 for each number, and the units of those below."""
-    line = shape.replace("\0", "1")
-    prints: list[Print] = []
-    for layout in [] if _is_broken(line) else LAYOUTS:
-        matches = [*layout.pattern.finditer(line)]
-        is_named = "name" in layout.pattern.groupindex
-        if matches and any(layout.units):
-            units = layout.units
-        for match in matches:
-            if match.lastgroup in ("value", "unit"):
-                name = shape[slice(*match.span("name"))] if is_named else "Step"
-                if "\0" not in name and name in [other for other, *_ in prints]:
-                    name += "'"  # so that no energy is certain
-                unit = match.groupdict().get("unit") or _unit(name, units)
-                place = 2 * shape.count("\0", 0, match.start("value")) + 1
-                prints.append((name, unit.replace("\0", ""), match["value"], place))
-            elif match.lastgroup:
-                return [], units  # a head or the like
-        if matches and is_named:
-            break
-    return prints, units
+Prints = dict[str, tuple[str, int]]
+"""The unit of each name that is printed in a line, and where its value begins."""
 
 
 class _Table(Sheet):
@@ -325,7 +280,6 @@ class _Table(Sheet):
         self.form: Form = (None, -1, "")
         self.cells: dict[int, str] = {}  # the units in its fields
         self.page: dict[str, list[list[str]]] = {}  # its head, which may be repeated on each page
-        self.remarks: set[str] = set()  # shapes of lines that hold nothing
 
     def like_last(self, line: str) -> list[str] | None:
         """Return the fields of a line that looks like the last row, None of another."""
@@ -367,8 +321,12 @@ class _Text:
         self._line = 0
         self._tables = [_Table(wanted)]  # the last has no columns before its first row
         self._prints = [Sheet(wanted, is_printed=True)]  # of each run
+        self._shapes: dict[str, list[tuple[str, str, int]]] = {}
+        """What a line holds, by its text with \\0 for each number: names, their units, and where
+        their values are if `_NUMBERS` divides the line, 0 for a number that ended.
+        """
         self._heads: dict[str, list[list[str]]] = {}  # lines of words, divided in ways
-        self._units = ("", "")
+        self._units = ("", "")  # of times and energies, if the layout has only these
         named = (each.columns for each in LAYOUTS if re.search(f"{each.file}$", file))
         self._labels = dict(enumerate(next(named, ())))  # names of columns by place
         self._passed = 0  # columns of earlier sets
@@ -400,14 +358,14 @@ class _Text:
         return self._tables[-1]
 
     def _read(self, line: str) -> None:
-        """Read a row like the last one, printed values, or a line of another form."""
+        """Read a row like the last one, printed values, or a line of a new form."""
         over = self._over
         self._over = []
         if self._is_over:
-            self._is_in_layout(line)
+            self._read_new(line)
         elif over and len(line.split()) == len(over):
             for name, value in zip(over, line.split(), strict=True):
-                self._print(name, value, _unit(name, self._units))
+                self._print(name, value, self._unit(name))
         elif self._is_next_row(line) or line in self._heads:
             pass
         elif line in self._above:
@@ -415,22 +373,18 @@ class _Text:
         elif line in self._table.page:
             self._heads[line] = self._table.page[line]
         else:
-            parts = _NUMBERS.split(line)
-            if " " in parts:
-                parts = _NUMBERS.split(_SPACED.sub("?", line))
-            shape = "\0".join(parts[::2])
-            prints, self._units = _prints(shape, self._units)
-            for name, unit, value, place in prints:
-                while "\0" in name:
-                    name = name.replace("\0", parts[place - 2 * name.count("\0")], 1)
-                self._print(name, parts[place] if value == "1" else value, unit)
-            if not prints and shape not in self._table.remarks:
-                self._read_new(line, shape)
+            fields = _NUMBERS.split(line)
+            prints = self._shapes.get("\0".join(fields[::2]))
+            if prints is None:
+                self._read_new(line)
+                return
+            for name, unit, place in prints:
+                self._print(name, fields[place] if place else "nan", unit)
 
     def _is_next_row(self, line: str) -> bool:
         """Add a row like the last one to its table.  Return whether it is one."""
         table = self._table
-        if not table.names or (self._heads and not self._heads.keys() <= table.page.keys()):
+        if self._heads and not self._heads.keys() <= table.page.keys():
             return False
         fields = table.like_last(line)
         values = table.values(fields) if fields else [None]
@@ -442,26 +396,41 @@ class _Text:
         table.put(self._line, table.kept, values)
         return True
 
-    def _read_new(self, line: str, shape: str) -> None:
-        """Read what a layout finds in a line, or else words or a row."""
-        if _is_broken(line):
+    def _read_new(self, line: str) -> None:
+        """Read a line of a new form: what a layout finds in it, or else words or a row."""
+        if _OBJECT.match(line) and _is_broken(line):
             self._prints[-1].skipped += 1
-        elif not self._is_in_layout(line) and self._words_or_row(line):
-            is_text = "\0" not in shape or re.search(r"[^\W\d_]", shape)
-            if is_text and len(self._table.remarks) < MAX_SHAPES:
-                self._table.remarks.add(shape)
+            return
+        prints: Prints = {}
+        is_read = False
+        for layout in LAYOUTS:
+            for match in layout.pattern.finditer(line):
+                if any(layout.units):
+                    self._units = layout.units
+                is_read |= self._take(layout, match, prints)
+            if is_read:
+                break
+        is_nothing = not is_read and not self._is_over and self._words_or_row(line)
+        if is_nothing or prints:
+            self._remember(line, prints)
 
-    def _is_in_layout(self, line: str) -> bool:
-        """Read what a layout finds in a line.  Return whether that is anything but values."""
-        return any(
-            self._take(layout, match)
-            for layout in LAYOUTS
-            if "name" not in layout.pattern.groupindex  # of a value
-            for match in layout.pattern.finditer(line)
-        )
+    def _remember(self, line: str, prints: Prints) -> None:
+        """Remember what lines of this shape hold: these prints, where their values begin."""
+        starts = {match.start(): 2 * n + 1 for n, match in enumerate(_NUMBERS.finditer(line))}
+        holds = []
+        for name, (unit, start) in prints.items():
+            place = 0 if _IS_FAILED.match(line, start) else starts.get(start)
+            if place is None or _NUMBERS.search(name):
+                return  # another name may have this shape
+            holds.append((name, unit, place))
+        shape = _NUMBERS.sub("\0", line)
+        is_text = not starts or re.search(r"[^\W\d_]", shape)
+        is_odd = None in map(number, _NUMBERS.findall(line))  # as in a version, 1.2.3
+        if is_text and not is_odd and len(self._shapes) < MAX_SHAPES:
+            self._shapes[shape] = holds
 
-    def _take(self, layout: Layout, match: re.Match[str]) -> bool:
-        """Take what a layout found.  Return whether that is anything but values."""
+    def _take(self, layout: Layout, match: re.Match[str], prints: Prints) -> bool:
+        """Take what a layout found.  Return whether that is all there is in the line."""
         line = match.string
         groups = {name: text for name, text in match.groupdict().items() if text}
         match groups:
@@ -474,6 +443,14 @@ class _Text:
                     sheet.error = sheet.error or text  # later ones follow from the first
             case _ if self._is_over:
                 pass
+            case {"value": value}:
+                name = groups.get("name", "Step")
+                if name in prints:
+                    name += "'"  # so that no energy is certain
+                unit = groups.get("unit") or self._unit(name)
+                self._print(name, value, unit)
+                prints[name] = (unit, match.start("value"))
+                return "name" in groups
             case {"names": text}:
                 self._heads = {line: _ways(text, layout.cells)}
             case {"over": text}:
@@ -508,6 +485,7 @@ class _Text:
         if self._table.names:
             self._passed += self._table.form[1] - 1
             self._tables.append(_Table(self._wanted))
+        self._shapes.clear()  # what held nothing may be a head
         self._prints.append(Sheet(self._wanted, self._line, is_printed=True))
 
     def _print(self, name: str, text: str, unit: str) -> None:
@@ -515,8 +493,14 @@ class _Text:
         if value is not None:
             self._prints[-1].print(name, unit, self._line, value)
 
+    def _unit(self, name: str) -> str:
+        """Return the unit of a column by its name, or that of its layout's times or energies."""
+        time, energy = self._units
+        default = time if role(name)[0] == "time" else energy * is_energy(name)
+        return split_unit(name)[1] or default
+
     def _words_or_row(self, line: str) -> bool:
-        """Read a row, or words that may be a head.  Return whether lines like it are neither."""
+        """Read a row, or words that may be a head.  Return whether it is neither."""
         text = line.lstrip().rstrip(" \r")  # a tab may stand before a blank field
         if not re.search(r"[\w*]", text):
             return True  # a rule
@@ -530,10 +514,10 @@ class _Text:
                 return False
             return is_comment or numbers[0] is None
         ways = _ways(bare)
-        if self._table.names and not any(map(self._worth, chain(ways, *self._heads.values()))):
-            is_row = bool(is_like and delimiter and not is_comment)
-            self._table.skipped += is_row
-            return not is_row
+        is_row = is_like and delimiter and not is_comment
+        if is_row and not any(map(self._worth, chain(ways, *self._heads.values()))):
+            self._table.skipped += 1
+            return False
         self._heads[line] = ways
         if len(self._heads) > MAX_HEADS:
             del self._heads[next(iter(self._heads))]
@@ -585,7 +569,11 @@ class _Text:
             self._begin_table(names or self._labelled(len(fields)), fields)
         if names or not goes_on:
             self._table.form = form
-        self._table.page |= {line: ways for line, ways in self._heads.items() if names in ways}
+        for line, ways in self._heads.items():
+            if names in ways:
+                self._table.page[line] = ways
+            elif not any(map(self._worth, ways)):  # it never will be a head
+                self._remember(line, {})
         self._heads.clear()
         return True
 
@@ -593,7 +581,7 @@ class _Text:
         """Begin a table of columns of these names above a row."""
         if self._table.names:
             self._tables.append(_Table(self._wanted))
-        self._table.remarks.clear()  # they may be rows
+        self._shapes.clear()  # what held nothing may be a row
         self._table.line = self._line
         self._table.cells = _units_in(fields)
         for name, unit in zip(names, self._units_of(names, fields), strict=True):
@@ -643,7 +631,7 @@ class _Text:
 
     def _units_of(self, names: list[str], fields: list[str]) -> list[str]:
         """Return the unit of each column, as far as it is certain to be its own."""
-        units = [_unit(name, self._units) for name in names]
+        units = [self._unit(name) for name in names]
         others = (ways for ways in self._heads.values() if names not in ways)
         for row in chain.from_iterable(others):
             bare = [each.strip("()[]") for each in row]
