@@ -103,7 +103,7 @@ class Judge:
         self._last = start
         self._judged = 0  # the step of the last judgement
         self._bins: list[_Bin] = []  # replaced and never changed in place
-        self._left = ""  # the word of the last judgement that it leaves
+        self._left = ""  # the word of the first judgement that it leaves
         # the band of an error that beats with the steps may leave the start and come back
         fastest_turn = min(period, math.tau / model.w0) if model.turns else math.inf
         self._may_beat = fastest_turn < levels.MIN_STEPS_A_TURN * self._h
@@ -195,7 +195,7 @@ class Judge:
         elif reason := self._doubt(found.verdict, away > rounding):
             found = found._replace(verdict=UNDECIDED, reason=reason, rests=False)
         if found.verdict in LEAVES:
-            self._left = found.verdict
+            self._left = self._left or found.verdict
         return found
 
     def _kept(self, found: Judgement, low: float, high: float) -> Judgement:
