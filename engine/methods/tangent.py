@@ -70,7 +70,7 @@ class Stretching:
             _, (theta, omega) = tangent_map(self._phases, phase, self._along, self._h, steps)
             length = math.hypot(theta, omega / self._w0)
             growth = math.log(length)
-        except (ArithmeticError, ValueError):  # of the sine of a large imaginary number, or of 0
+        except (ArithmeticError, ValueError):  # sine of a large imaginary number, or log 0
             return
         if growth < math.inf:
             self._along = theta / length, omega / length

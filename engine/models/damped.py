@@ -39,7 +39,7 @@ class DampedPendulum(Pendulum):
     equation = "theta'' = -w0² sin theta - gamma omega"
     parameters = (
         # beyond, the pendulum creeps, and its exact motion takes too many steps
-        Number("friction", "s⁻¹", "gamma in -gamma omega, in s⁻¹", 0.0, 100.0, max_over_w0=100),
+        Number("friction", "s⁻¹", "friction gamma in s⁻¹", 0.0, 100.0, max_over_w0=100),
     )
     offers = ("parts", "rates")
     has_separatrix = False

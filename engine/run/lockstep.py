@@ -182,7 +182,7 @@ class Lockstep:
         if self._judged:
             methods = zip(self.scene.cast, self._tracks, self.stepping.own, strict=True)
             for method, track, h in methods:
-                start = self._look_point(track)
+                start = self._take_look_point(track)
                 judge = Judge(h, self.period, method=method, model=self._model, start=start)
                 if track.diverged_at is not None:
                     judge.fail()
@@ -259,7 +259,7 @@ class Lockstep:
             if track.diverged_at is not None:
                 continue
             previous = judge.judgement.verdict
-            judge.look(self._look_point(track))
+            judge.look(self._take_look_point(track))
             now = judge.judgement
             if now.verdict != previous:
                 self._note(
@@ -290,7 +290,7 @@ class Lockstep:
         error = self._tracks[index].error
         self.milestones.append(Milestone(kind, self.scene.cast[index], energy_error=error, **more))
 
-    def _look_point(self, track: _Track) -> LookPoint:
+    def _take_look_point(self, track: _Track) -> LookPoint:
         """Return a method's look point; the extremes of the next one count from here."""
         theta, omega, _ = self._model.observe(track.phase)
         point = LookPoint(

@@ -21,7 +21,7 @@ _STIFF = 2500.0  # s⁻²: the spring vibrates at 50 rad/s, the swing at 3
 _FIRST_LOOK = (
     Scene(
         "drift",
-        watch="Explicit Euler gains energy, RK4 loses some, symplectic methods do neither.",
+        watch="Explicit Euler gains energy, RK4 loses a bit, symplectic methods do neither.",
         shot=Shot(theta=math.pi),
     ),
     Scene(
@@ -176,7 +176,7 @@ _STABILITY = (
         cast=_cast("velocity_verlet", "symplectic_euler"),
         speed=16.0,
         watch="4 steps a period: Verlet's energy doubles and returns. Press - to avoid this.",
-        often_said="“h over the golden ratio avoids resonances: the ratio is irrational.” But 5/8 "
+        often_said='"h over the golden ratio avoids resonances: the ratio is irrational." But 5/8 '
         "of h does too: it is just as far from the relevant resonance.",
         shot=Shot(log=False, front=("velocity_verlet",)),
     ),
@@ -191,8 +191,8 @@ _STRUCTURE = (
         h=0.025,
         cast=_cast("explicit_euler", "lagged_verlet", "conformal_verlet", "rk4"),
         speed=2.0,
-        watch="Explicit Euler gains energy despite friction, and spins; the others decay.",
-        often_said="“RK4 is better with friction.” True for an accuracy of 0.1 % or better, "
+        watch="Explicit Euler gains energy despite friction and spins; the other swings decay.",
+        often_said='"RK4 is better with friction." True for an accuracy of 0.1 % or better, '
         "but at 1 % conformal Verlet costs half as much.",
     ),
     Scene(
@@ -202,7 +202,7 @@ _STRUCTURE = (
         cast=_cast("halving_verlet", "halving_richardson", "velocity_verlet", "rk4"),
         speed=4.0,
         watch="Step doubling: energy up 19 % in 1 min, 29.6 % in 2; Verlet stays within 8 %.",
-        often_said="“Adaptive steps are better.” But step doubling makes Verlet's energy drift.",
+        often_said='"Adaptive steps are better." But step doubling makes Verlet drift in energy.',
         # RK4 lies on Richardson's line
         shot=Shot(log=False, front=("halving_verlet", "halving_richardson", "velocity_verlet")),
     ),
@@ -217,7 +217,7 @@ _STIFFNESS = (
         cast=_SPRING,
         speed=0.5,
         watch="h·omega_s = 1: RK4 drains the spring, IMEX Euler drains the whole pendulum.",
-        often_said="“IMEX Euler is stable at any h.” True, but it damps the swing as well as the "
+        often_said='"IMEX Euler is stable at any h." True, but it damps the swing as well as the '
         "spring.",
         # Verlet and RESPA lie on implicit midpoint
         shot=Shot(
@@ -244,7 +244,7 @@ _STIFFNESS = (
         cast=_SPRING,
         speed=0.5,
         watch="One step per spring period: RESPA resonates, implicit midpoint stays bounded.",
-        often_said="“With impulse methods, only the slow motion limits h.” But h must avoid "
+        often_said='"With impulse methods, only the slow motion limits h." But h must avoid '
         "multiples of the spring's period.",
     ),
 )
@@ -283,7 +283,7 @@ _LEARNING = (
         ),
         speed=8.0,
         watch="Learned field and map lose 60 % of E0 in 100 s; H and SympNet err by < 1 %.",
-        often_said="“A learned Hamiltonian conserves energy.” But only the learned energy; "
+        often_said='"A learned Hamiltonian conserves energy." But only the learned energy; '
         "the true one is off by a percent.",
         # the field lies on the map, H on SympNet
         shot=Shot(front=("learned_map", "learned_symplectic_map", "rk4")),
@@ -296,7 +296,7 @@ _MEAN_FIELD = (
         model="mean_field",
         cast=_cast("rk4", "mean_field_splitting"),
         speed=4.0,
-        watch="RK4's energy is accurate to 4e-4, but in a minute the norm |s| shrinks by 15 %.",
+        watch="RK4's energy is good to 4e-4; in a minute |s|, the probability, falls by 15 %.",
         shot=Shot(quantity="probability_error", log=False),
     ),
 )

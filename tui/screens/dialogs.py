@@ -302,7 +302,7 @@ class StartForm(Form[Scene]):
         except ValueError as error:
             verdict.update(f"{name}: {error}.")
         else:
-            verdict.update(f"w0 = {scene.w0:.4g} s⁻¹, {z_text(scene, 3)}")
+            verdict.update(f"w0 = {scene.w0:.4g} 1/s, {z_text(scene, 3)}")
         verdict.set_class(self._scene is None, "-wrong")
 
     @on(Input.Submitted)

@@ -96,7 +96,7 @@ def scene_card(scene: Scene) -> str:
         "often said": scene.often_said,
         "start": f"theta {math.degrees(scene.theta):.5g}°, omega {scene.omega:.5g} rad/s",
         "pendulum": f"length {scene.length:.5g} m, gravity {scene.gravity:.5g} m/s², w0 = "
-        f"{scene.w0:.4g} s⁻¹",
+        f"{scene.w0:.4g} 1/s",
         **{name: f"{value:.5g} {NUMBERS[name].unit}" for name, value in scene.parameters.items()},
         "step": f"h = {scene.h:.5g} s, {z_text(scene)}",
         "motion": motion_text(scene, exact),

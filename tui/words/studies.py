@@ -32,7 +32,7 @@ def point_words(point: Point, kind: ErrorKind) -> str:
     error = f"{kind} error {point.errors[kind]:.1e}"
     if flaw := point.flaws[kind]:
         error += f" ({REASONS[flaw]})"
-    swing = f"z {point.z:.3g}, {few(point.steps_per_swing)} steps a period"
+    swing = f"z {point.z:.3g}, {few(point.steps_per_swing)} steps per small-amplitude period"
     text = f"{point.method.label} at h {point.h:.4g} s ({swing}): {error}"
     return f"{text} for {point.force_evaluations} force evaluations."
 

@@ -374,6 +374,7 @@ OBJECTS = rows('{{"t": {t}, "E": {e}}}')
         (TABLE, "# a note, b", 0),
         (TABLE, ",7", 2),
         (TABLE, "t,E", 0),
+        ("t,E\n" + rows("{t},{e}", 0, 9) + "t,E\n" + rows("{t},{e}", 9), "a,b", 2),
         ("t E\n" + rows("{t} {e}"), "a note", 0),
         ("t E\n" + rows("{t} {e}"), "#NUM! #NUM!", 2),
     ],

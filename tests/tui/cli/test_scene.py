@@ -162,3 +162,6 @@ def test_a_shot_names_what_differs_and_several_scenes_are_a_lesson(mine):
     assert (second.shot.view, second.shot.front) == ("phase", ("rk4",))
     assert (second.shot.theta, second.shot.seconds) == (math.radians(40), 30.0)
     assert pendu("run", "--scene", mine, "--time", "1", "--json").json["scene"]["name"] == "kept"
+    mine.write_text("h = 0.02\n[[scene]]\n[[scene]]\nh = 0.01")
+    read_scenes.cache_clear()
+    assert [each.h for each in read_scenes(mine).values()] == [0.02, 0.01]

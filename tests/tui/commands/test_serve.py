@@ -134,6 +134,10 @@ def test_what_cannot_be_served_is_one_sentence(tmp_path, monkeypatch):
     assert said.refused(2, f"cannot listen on 127.0.0.1 port {port}: ", "--port")
     assert "[Errno" not in said.err
     assert pendu("serve", "--record", tmp_path / "no" / "folder").refused(5, "No such file")
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "access", lambda *_: False)
+        patch.setattr(serve, "LabServer", None)
+        assert pendu("serve", "--record", tmp_path, "--port", port).refused(5, "not writable")
     monkeypatch.setitem(sys.modules, "textual_serve.server", None)
     monkeypatch.delitem(sys.modules, "pendu_tui.tui.commands.serve", raising=False)
     assert pendu("serve").refused(2, "install", "serve needs")

@@ -1,10 +1,12 @@
 """The lab's lines, as pictures made of text."""
 
+import math
 from itertools import product
 from types import SimpleNamespace
 
 import pytest
 
+from pendu_tui.engine.methods import USUAL_CAST
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from pendu_tui.recordings.recording import Recording
@@ -17,6 +19,7 @@ from pendu_tui.tui.screens.lines import (
     BADGE,
     InsightLine,
     facts,
+    limit_warning,
     status_row,
     text_rows,
     without_folder,
@@ -46,6 +49,12 @@ def near_limit(h: float) -> Taped:
     live = taped()
     live.start(SCENES["verlet-limit"].altered(h=h))
     return live
+
+
+def test_a_method_is_stable_at_its_limit_itself():
+    verlet = USUAL_CAST[2]
+    assert limit_warning({verlet: 2.0}) == ""
+    assert limit_warning({verlet: math.nextafter(2.0, 3.0)}) == "unstable: v (z > 2)"
 
 
 TAPE = Taped.recording_status

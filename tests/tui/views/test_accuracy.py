@@ -125,7 +125,9 @@ async def test_the_pointer_reads_a_point_out_and_a_click_uses_its_h():
         at = (column + 1, row + 1)  # the frame
         await pilot.press("right")  # the pointer goes before the cursor
         await pilot.hover(pane, (at[0] + 3, at[1]))
-        assert words(pane).startswith(f"RK4 at h {point.h:.4g} s (z 0.0851, 73.8 steps a period")
+        assert words(pane).startswith(
+            f"RK4 at h {point.h:.4g} s (z 0.0851, 73.8 steps per small-amplitude period"
+        )
         exact = replace(pane.points["rk4", RUNGS[1]], errors=dict.fromkeys(ERROR_LABELS, 0.0))
         pane.add(exact)
         pane._chart.forget()

@@ -103,7 +103,8 @@ async def grabbed(theatre, *moves, start=(12, 9), wait=0.3):
     await theatre.pilot.mouse_up(stage, offset=moves[-1])
     await theatre.pilot.hover(stage, offset=start)  # with no button down
     await theatre.pilot.pause()
-    assert theatre.stage.shown.held is theatre.app.mouse_captured is None
+    assert theatre.stage.shown.held is None
+    assert theatre.app.mouse_captured is None
     return held, table
 
 
