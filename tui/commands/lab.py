@@ -46,7 +46,7 @@ def live(options: argparse.Namespace) -> int:
     scene = scene_of(options)
     check(options)
     lab = Live(scene, options.speed or scene.speed)
-    if options.equal_cost:
+    if options.equal_cost or scene.shot.equal_cost:
         lab.change(lab.stepping.toggled())
     name = options.scene or options.scene_option or ""
     lesson = None

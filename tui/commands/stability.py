@@ -147,7 +147,7 @@ def _swings(grid: Grid, cells: Cells) -> Iterator[dict[str, Any]]:
 
 
 def _words(scene: Scene) -> Iterator[str]:
-    yield "\nPendulum: the smallest z at which a swing is lost; more steps lower it."
+    yield "\nPendulum: the first z tried at which a swing is lost; more steps lower it."
     yield LOST.replace("\n", " ")
     yield f"Margin = limit / z; the scene has z = {scene.z:.4g}. Below 1, z is beyond the limit."
     yield "The amplitudes include the scene's own, if it swings."

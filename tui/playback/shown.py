@@ -54,8 +54,10 @@ class Shown(NamedTuple):
     def through(self, scene: Scene, shot: Shot | None = None) -> "Shown":
         """Return these settings with a shot, by default the scene's."""
         if shot is None:
+            shot = scene.shot
             known = SCENES.get(scene.name)
-            shot = known.shot if known == scene else scene.shot
+            if known == scene and shot == Shot():  # as in a recording
+                shot = known.shot
         cast = {method.key for method in scene.cast}
         front = cast.intersection(shot.front) or cast
         seen: dict[str, Any] = {name: getattr(shot, name) for name in SEEN}

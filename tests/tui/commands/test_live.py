@@ -102,6 +102,8 @@ def test_options_of_a_lab_and_of_a_replay_reach_them(asking, monkeypatch):
     methods = []
     watched = []
     library = asking.with_name("library")
+    saved = asking.with_name("saved.toml")
+    saved.write_text("[shot]\nequal_cost = true")
     monkeypatch.setenv("PENDU_RECORDINGS", str(library))
     monkeypatch.setattr(lab, "own_methods", lambda options: options.method)
     monkeypatch.setattr(lab, "remember", methods.append)
@@ -115,22 +117,25 @@ def test_options_of_a_lab_and_of_a_replay_reach_them(asking, monkeypatch):
         replay,
         ("replay", "drift", "--method", "mine.py"),
         ("live", asking, "--equal-cost", "--no-record", "--speed", 3),
+        ("live", saved, "--no-record"),
         ("live", "--scene", asking, "--record", "new.mcap"),
     ):
         assert pendu(*command).code == 0
     assert not gc.isenabled()  # which would delay the first paint
     gc.enable()
-    assert ["record" in vars(screen) for screen in screens] == [False, True, False, True]
+    assert ["record" in vars(screen) for screen in screens] == [False, True, False, False, True]
     assert screens[-1].record.keywords == {"file": Path("new.mcap")}
-    assert [screen.guide is None for screen in screens] == [True, True, False, False]
+    assert [screen.guide is None for screen in screens] == [True, True, False, True, False]
     assert methods == [[], ["mine.py"]]
     assert watched == ["by a process"]
     sources = [screen.source for screen in screens]
-    given, usual, equal, live = sources
+    given, usual, equal, as_saved, live = sources
     assert (given.looping, given.playhead.paused, given.playhead.position) == (True, True, 3.0)
     assert (given.playhead.speed, usual.playhead.speed) == (2.0, 1.0)
     assert (usual.looping, usual.playhead.paused, usual.playhead.position) == (False, False, 0.0)
-    assert (equal.stepping.equal_cost, live.stepping.equal_cost) == (True, False)
+    assert equal.stepping.equal_cost
+    assert as_saved.stepping.equal_cost
+    assert not live.stepping.equal_cost
     assert (equal.playhead.speed, live.playhead.speed) == (3.0, 0.5)
     assert not library.exists()  # a replay is not recorded
     for outside in (-0.01, usual.length + 0.02):

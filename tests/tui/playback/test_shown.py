@@ -28,6 +28,8 @@ def test_a_shot_sets_what_is_seen_and_is_found_in_it_again():
     assert Shown().through(altered) == Shown().through(altered, shot)
     recorded = replace(SCENES["spin"], shot=Shot())  # a recording has no shot
     assert Shown().through(recorded) == Shown().through(SCENES["spin"])
+    own = replace(recorded, shot=Shot(log=False))  # of a file
+    assert not Shown().through(own).log
     again = shown.shot(replace(DEFAULT_SCENE, shot=Shot(moment=1.0)), "phase", equal_cost=True)
     assert again == replace(shot, moment=1.0, view="phase", equal_cost=True)
     assert Shown().shot(DEFAULT_SCENE, "lab", equal_cost=False).front == ()
