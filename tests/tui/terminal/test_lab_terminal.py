@@ -140,7 +140,7 @@ def stuck_lab(folder: Path, library: Path, work: str = "pass"):
 def test_a_method_that_does_not_yield_is_told_of_and_the_keys_work(tmp_path, library):
     with stuck_lab(tmp_path, library) as session:
         session.wait_for("takes more than 3 s", 6.0)
-        assert b"stands still" in session.output
+        assert b"has stopped" in session.output
         session.type("p")
         session.wait_for("gentle", 6.0)
         session.type("q")
