@@ -44,15 +44,15 @@ VERDICTS: dict[str, Verdict] = {
             GROWS,
             sign="+",
             ink="text",
-            meaning="the mean energy has risen for good; if it has levelled off, "
-            "the slope is from then on",
+            meaning="the mean energy has risen for good; if it has since levelled off, "
+            "the slope is that of the later part",
         ),
         Verdict(
             LOSES,
             sign="-",
             ink="text",
-            meaning="the mean energy has fallen for good; if it has levelled off, "
-            "the slope is from then on",
+            meaning="the mean energy has fallen for good; if it has since levelled off, "
+            "the slope is that of the later part",
         ),
         Verdict(
             CHAOTIC,
