@@ -176,7 +176,7 @@ class Judged:
         if self.reason:
             verdict += f": {self.reason}"
         if self.diverged_at is not None:
-            verdict += f": its energies break down at {self.diverged_at:g} {time_unit}".rstrip()
+            verdict += f": the energies break down at {self.diverged_at:g} {time_unit}".rstrip()
         lines = [f"verdict       {verdict}"]
         if self.slope is not None and self.uncertainty is not None:
             relative = f"relative {self.slope:+.2e} ± {self.uncertainty:.0e} {per}"

@@ -108,8 +108,7 @@ TREND = Quantity(
     label="per second",
     form="+.1e",
     head=Head("per s", 8, "trend per s", 11),
-    sentence="the mean change of dE/E0 per second; a bounded error can be larger than one "
-    "that grows",
+    sentence="the mean change of dE/E0 per second",
 )
 SLOPE = Quantity("slope", "1/s", in_gate=True)
 BOUND = Quantity("bound", "1/s", in_gate=True)

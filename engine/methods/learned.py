@@ -111,8 +111,8 @@ RK4_LEARNED_FIELD = _by_rk4(
     label="Learned field",
     letter="j",
     other_names=("learned vector field",),
-    formula="RK4 on d(theta, omega)/dt = sums of 60 tanh(a theta + b omega + c), fitted to 600 "
-    "measurements",
+    formula="RK4 on d(theta, omega)/dt = sums of 60 terms k tanh(a theta + b omega + c), "
+    "fitted to 600 measurements",
     note="It conserves nothing: within 100 s the true energy of a swing from 1 rad is off by "
     "36 %, from 1.5 rad by 60 %, and from 0.2 rad it is nine times as large.",
 )
@@ -123,8 +123,8 @@ RK4_LEARNED_HAMILTONIAN = _by_rk4(
     label="Learned H",
     letter="g",
     other_names=("learned Hamiltonian",),
-    formula="RK4 on Hamilton's equations of H = a sum of 60 tanh(a theta + b omega + c), fitted to "
-    "600 measurements",
+    formula="RK4 on Hamilton's equations of H = a sum of 60 terms k tanh(a theta + b omega + c), "
+    "fitted to 600 measurements",
     note="Its field is as inexact as the learned field, but its flow conserves H; from 1.5 rad at "
     "w0 h = 0.1 RK4 loses 2.5e-7 of H per second. The true energy of a swing is off by 1.2 % from "
     "1 rad, 0.3 % from 2, 12 % from 0.2.",
@@ -181,8 +181,8 @@ LEARNED_MAP = _learned(
     label="Learned map",
     letter="z",
     phases=learned_map,
-    formula="(theta, omega/w0) + w0 h (two sums of 60 tanh(a theta + b omega/w0 + c)), learned for "
-    "w0 h = 0.1",
+    formula="(theta, omega/w0) + w0 h (two sums of 60 terms k tanh(a theta + b omega/w0 + c)), "
+    "learned for w0 h = 0.1",
     order=1,
     force_evaluations=1,
     other_names=("plain learned map",),
@@ -196,8 +196,8 @@ LEARNED_SYMPLECTIC_MAP = _learned(
     label="SympNet",
     letter="t",
     phases=learned_symplectic_map,
-    formula="half a kick, a drift, half a kick, by sums of 20 k tanh(a x + c) of theta and of "
-    "omega/w0",
+    formula="half a kick, a drift, half a kick, by sums of 20 terms k tanh(a x + c) in theta "
+    "and in omega/w0",
     order=2,
     force_evaluations=1,
     first_same_as_last=True,

@@ -172,7 +172,7 @@ def _examine(phases: Phases, who: str) -> None:
     for kind, are_same in (("NumPy arrays", _are_same_arrays), ("complex numbers", _are_complex)):
         try:
             if not are_same(phases):
-                raise OwnMethodError(f"{who} gives different numbers from those for floats")
+                raise OwnMethodError(f"{who} gives different numbers from those with floats")
         except OwnMethodError as error:
             why = str(error).rstrip(".")
             raise OwnMethodError(

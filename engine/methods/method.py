@@ -154,7 +154,9 @@ class Measured(NamedTuple):
 def no_order(order: float | None) -> str:
     """Return why a method has no order, a clause; "" if it has one."""
     if order is None:
-        return f"no order: its error stays above {SMALL_ERROR:g} rad; it solves the wrong equation"
+        return (
+            f"no order: its error stays above {SMALL_ERROR:g} rad; it may solve the wrong equation"
+        )
     if round(order) < 1:
         return f"order {order:.3f}: the error does not fall with h; it solves the wrong equation"
     return ""

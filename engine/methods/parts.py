@@ -153,8 +153,8 @@ IMEX_EULER = Method(
     reference="Ascher, Ruuth & Spiteri, Appl. Numer. Math. 25 (1997) 151",
     used="equations with a stiff part: OrdinaryDiffEq.jl, IMEXEuler [docs.sciml.ai, IMEX SDIRK "
     "Methods]",
-    note="Stable at any h; it takes energy out of the spring, faster at larger h, and then out of "
-    "the swing.",
+    note="Stable at any h; it takes energy out of the spring, more per step at larger h, and then "
+    "out of the swing.",
     models=("spring",),
     takes="parts",
 )

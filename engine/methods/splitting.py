@@ -107,7 +107,7 @@ BLANES_MOAN_4 = _method(
     linear_limit=3.16346506656,
     other_names=("Blanes-Moan SRKN 6b",),
     reference="Blanes & Moan, J. Comput. Appl. Math. 142 (2002) 313, table 3",
-    used="spaceflight among many bodies: Principia [github.com, mockingbirdnest/Principia, "
+    used="n-body spaceflight: Principia [github.com, mockingbirdnest/Principia, "
     "integrators/methods.hpp]",
     note="It follows a 2 rad swing for 100 s to within 1e-3 (1e-6) rad in 2,800 (7,800) "
     "evaluations; Yoshida 6 takes 7,700 (23,800), RK4 15,600 (59,000).",
@@ -148,7 +148,7 @@ BLANES_MOAN_6 = _method(
     linear_limit=3.14143108775,
     other_names=("Blanes-Moan SRKN 11b",),
     reference="Blanes & Moan, J. Comput. Appl. Math. 142 (2002) 313, table 3",
-    used="spaceflight among many bodies: Principia [github.com, mockingbirdnest/Principia, "
+    used="n-body spaceflight: Principia [github.com, mockingbirdnest/Principia, "
     "integrators/methods.hpp]",
     note="Of order 6 only where the force depends on the position alone. It follows a swing from 2 "
     "rad for 100 s to within 1e-9 rad in 26,400 evaluations; BM4 takes 36,000, RK4 182,000.",

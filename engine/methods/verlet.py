@@ -196,7 +196,8 @@ VERLET_FLOAT32 = _verlet(
     letter="n",
     numbers="all numbers rounded to 32 bits",
     keeps_area=False,
-    note="Rounding is not symplectic: the modified energy does a random walk, 1e-5 in 10000 steps.",
+    note="Rounding is not symplectic: the modified energy does a random walk, "
+    "about 1e-5 in 10000 steps.",
     epsilon=2.0**-24,
     used="molecular dynamics: positions and velocities in GROMACS [manual.gromacs.org, Definitions "
     "and Units]",
@@ -254,7 +255,7 @@ def _halving(*, richardson: bool, ends: str, **fields: Any) -> Method:
         formula="a step of velocity Verlet and two half steps: if they differ by more than "
         f"{TOLERANCE}, halve h; {ends}",
         reference="Press et al., Numerical Recipes, 2nd edition (1992), 16.2",
-        note="Its force evaluations, which equal cost uses, are the mean over a minute of the "
+        note="Its force evaluations, as used for equal cost, are the mean over a minute of the "
         "scene halving. An undivided step takes six, and has the order given here.",
         any_numbers=False,
         varies=True,

@@ -66,7 +66,7 @@ class Spring(Model):
         ExtraColumn(
             "spring",
             "spring E",
-            "the spring's energy over its initial value",
+            "the energy of the spring's vibration over its initial value",
             itemgetter("spring_energy"),
         ),
     )
@@ -79,8 +79,8 @@ class Spring(Model):
         "Maps and studies apply to a single angle; the bob on a spring has two coordinates."
     )
     without_ring = (
-        "Angle and angular velocity: a projection from four dimensions, without curves of equal "
-        "energy or ring."
+        "Angle and angular velocity, a projection from four dimensions: no curves of equal "
+        "energy and no ring."
     )
 
     @property

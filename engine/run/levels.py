@@ -31,8 +31,8 @@ ENDS = (8, 16, 32)  # parts of the bins of which the last must be like the other
 
 FEW = "{need} samples are needed"
 OPEN = "a trend cannot be excluded; {longer}"
-WALKS = "the energy cannot be told from a random walk; a longer record may not help"
-UNLIKE_END = "its last part differs from the rest"
+WALKS = "the energy cannot be distinguished from a random walk; a longer record may not help"
+UNLIKE_END = "the end of the record differs from the rest"
 WIDENS = "the energy's band widens"
 TURNED = "the energy has turned back"
 RETURNS = "a symplectic method's energy should return, but has not yet"

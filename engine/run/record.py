@@ -90,7 +90,7 @@ class Order(NamedTuple):
         return f"cannot tell: the energy fluctuates as {self}; {why}"
 
     def __str__(self) -> str:
-        return f"h^{self.power:.2f} ± {self.uncertainty:.2f}"
+        return f"h^({self.power:.2f} ± {self.uncertainty:.2f})"
 
 
 def fluctuation(times: Any, energies: Any) -> Fluctuation:

@@ -44,21 +44,22 @@ VERDICTS: dict[str, Verdict] = {
             GROWS,
             sign="+",
             ink="text",
-            meaning="the mean energy has risen for good; if it has since levelled off, "
-            "the slope is that of the later part",
+            meaning="the mean energy has risen for good; if it has levelled off, "
+            "the trend shown is that since then",
         ),
         Verdict(
             LOSES,
             sign="-",
             ink="text",
-            meaning="the mean energy has fallen for good; if it has since levelled off, "
-            "the slope is that of the later part",
+            meaning="the mean energy has fallen for good; if it has levelled off, "
+            "the trend shown is that since then",
         ),
         Verdict(
             CHAOTIC,
             sign="!",
             ink="text",
-            meaning="nearby trajectories of a symplectic method separate exponentially",
+            meaning="only in runs of a symplectic method: nearby trajectories separate "
+            "exponentially",
         ),
         Verdict(
             FAILED,

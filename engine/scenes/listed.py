@@ -27,7 +27,7 @@ _FIRST_LOOK = (
     Scene(
         "gentle",
         theta=0.1,
-        watch="Nearly linear: explicit Euler gains z² of its energy per step, RK4 loses z⁶/72.",
+        watch="Nearly linear: dE/E per step is z² for explicit Euler and -z⁶/72 for RK4.",
         shot=Shot(front=("explicit_euler", "velocity_verlet", "rk4")),
     ),
     Scene(
@@ -146,7 +146,7 @@ _STABILITY = (
         length=_UNIT_W0,
         h=math.sqrt(0.95),
         speed=64.0,
-        watch="K = z² = 0.95: two methods are chaotic, yet |omega| stays below pi/h.",
+        watch="Standard map, K = z² = 0.95: two methods are chaotic, yet |omega| < pi/h.",
         shot=Shot(
             view="phase",
             theta=math.pi,
@@ -177,7 +177,7 @@ _STABILITY = (
         speed=16.0,
         watch="4 steps a period: Verlet's energy doubles and returns. Press - to avoid this.",
         often_said='"h over the golden ratio avoids resonances: the ratio is irrational." But 5/8 '
-        "of h does too: it is just as far from the relevant resonance.",
+        "of h does too: it is about as far from the relevant resonance.",
         shot=Shot(log=False, front=("velocity_verlet",)),
     ),
 )
@@ -191,7 +191,7 @@ _STRUCTURE = (
         h=0.025,
         cast=_cast("explicit_euler", "lagged_verlet", "conformal_verlet", "rk4"),
         speed=2.0,
-        watch="Explicit Euler gains energy despite friction and spins; the other swings decay.",
+        watch="Despite friction explicit Euler gains energy and spins; the other swings decay.",
         often_said='"RK4 is better with friction." True for an accuracy of 0.1 % or better, '
         "but at 1 % conformal Verlet costs half as much.",
     ),
@@ -245,7 +245,7 @@ _STIFFNESS = (
         speed=0.5,
         watch="One step per spring period: RESPA resonates, implicit midpoint stays bounded.",
         often_said='"With impulse methods, only the slow motion limits h." But h must avoid '
-        "multiples of the spring's period.",
+        "multiples of half the spring's period.",
     ),
 )
 
@@ -264,7 +264,7 @@ _PRECISION = (
         h=1 / 1024,
         cast=_PRECISE,
         speed=4.0,
-        watch="In 64 bits theta is lost by 35 s; with compensated sums it is good to 3e-4 rad.",
+        watch="In 64 bits theta is off by 0.1 rad at 35 s; with compensated sums by 3e-4 rad.",
         shot=Shot(quantity="theta_error"),
     ),
 )
@@ -282,9 +282,9 @@ _LEARNING = (
             "rk4",
         ),
         speed=8.0,
-        watch="Learned field and map lose 60 % of E0 in 100 s; H and SympNet err by < 1 %.",
-        often_said='"A learned Hamiltonian conserves energy." But only the learned energy; '
-        "the true one is off by a percent.",
+        watch="Learned field and map lose 60 % of E0 in 100 s; Learned H and SympNet, < 1 %.",
+        often_said='"A learned Hamiltonian conserves energy." Only the learned energy: '
+        "the true one is off by up to a percent.",
         # the field lies on the map, H on SympNet
         shot=Shot(front=("learned_map", "learned_symplectic_map", "rk4")),
     ),
@@ -296,7 +296,7 @@ _MEAN_FIELD = (
         model="mean_field",
         cast=_cast("rk4", "mean_field_splitting"),
         speed=4.0,
-        watch="RK4's energy is good to 4e-4; in a minute |s|, the probability, falls by 15 %.",
+        watch="RK4's energy is good to 4e-4, but total probability falls by 15 % in a minute.",
         shot=Shot(quantity="probability_error", log=False),
     ),
 )

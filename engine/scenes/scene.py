@@ -39,7 +39,7 @@ def _complete(model: str, given: Mapping[str, float]) -> dict[str, float]:
     for name, value in given.items():
         if name not in own and value:
             owners = [key for key, other in MODELS.items() if NUMBERS.get(name) in other.parameters]
-            why = f"the model {model} has no {name}; {' or '.join(owners)} has"
+            why = f"the model {model} has no {name}; {' or '.join(owners)} does"
             raise InputError(f"{why}: choose a scene of that model.")
     return {name: given.get(name, default) for name, default in own.items()}
 
@@ -112,7 +112,7 @@ class Scene:
             if self.model not in method.models:
                 suited = " or ".join(method.models)
                 why = f"{method.label} is not for the model {self.model}"
-                raise InputError(f"{why}; it is for {suited}: choose a scene of that model.")
+                raise InputError(f"{why}; it is for {suited}: choose a scene of such a model.")
 
     @property
     def equations(self) -> Model:
@@ -162,7 +162,7 @@ class Scene:
             return why
         names = ", ".join(method.label for method in self.cast if not method.any_numbers)
         if names:
-            return f"No ring with {names} in the cast."
+            return f"No ring with {names} among the methods."
         return ""
 
     def fields(self) -> dict[str, Any]:

@@ -29,7 +29,7 @@ PARKED = 1 / 8  # share of the swings: when so many are lost, the others go on w
 
 FATES = (
     *("holds", "over the top", verdicts.GROWS, verdicts.LOSES),
-    *("holds, wobbling", "holds elsewhere", verdicts.CHAOTIC),
+    *("holds, but wider", "holds off-centre", verdicts.CHAOTIC),
 )
 """What becomes of a swing: it swings as wide as it should; |theta| passes pi; its energy leaves the
 band upwards or downwards; it stays, but swings wider; it stays beyond a symplectic method's linear

@@ -128,7 +128,7 @@ def test_a_judged_series_prints_as_the_command_does():
         "energy error  -2.50e-01 at the end, 5.00e-01 at most, relative to 20",
     ]
     failed = judge(TIMES, [*WAVE[:-1], math.nan])
-    assert failed.lines("fs")[0] == "verdict       failed: its energies break down at 1999 fs"
+    assert failed.lines("fs")[0] == "verdict       failed: the energies break down at 1999 fs"
     assert "nan" not in str(failed)
     assert "± 2e-06 per unit of time, absolute" in str(found)
 

@@ -54,7 +54,7 @@ Enter continues, 1 and 2 answer, Backspace goes back, Esc leaves; T in the lab r
         place="lab:replay",
     ),
     "snapshot": Command(
-        "save the lab as an SVG image, with the same bytes each time",
+        "save the lab as an SVG image, byte-identical each time",
         "SCENE --time --size PICTURE -o --force",
         """\
   pendu-tui snapshot --time 12 -o lab.svg
@@ -107,8 +107,8 @@ The CSV has every point of the map; a figure shows the limits against amplitude.
   pendu-tui run --theta 10deg:170deg:17 --h 0.01:0.5:50 --time 10min --workers 4 -o runs.csv
 
 slope: of the relative energy error, per second; |slope| is below `bound` with 99 % confidence;
-share: what it adds up to over the run, in band widths; drift_per_second: the slope, or null if no
-trend is evident
+share: what the slope adds up to over the run, in band widths; drift_per_second: the slope, or null
+if no trend is evident
 
 verdicts:
 {verdicts}
@@ -132,7 +132,7 @@ verdicts:
 FILE is a log or table from any program: CSV, LAMMPS, GROMACS, OpenMM, ASE, NAMD, Amber, CP2K, JSON,
 .npz, …, compressed or not.  Without options its tables and columns are listed, and the energy is
 judged if it is clear which column holds it.  Results have the units of the file's headers.
-If the verdict is `failed`, it exits with 1.
+The exit code is 1 if the verdict is `failed`.
 """,
     ),
     "verify": Command(
@@ -144,7 +144,7 @@ If the verdict is `failed`, it exits with 1.
   pendu-tui verify golden
 
 A folder means all recordings below it; golden, the bundled ones.
-Exit codes: 0 all are identical; 1 one differs or is incomplete (a .part may be incomplete); 3 one
+Exit codes: 0 all are identical; 1 one differs or, unless a .part, is incomplete; 3 one
 is unreadable.
 """,
     ),

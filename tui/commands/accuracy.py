@@ -192,7 +192,7 @@ class Results:
             method_column([attempt.method for attempt in self.attempts]),
             Column("h [s]", "h", ".5g"),
             Column("z", "z", ".3g"),
-            Column("steps/small period", "steps_per_swing", few),
+            Column("steps per 2 pi/w0", "steps_per_swing", few),
             Column("evaluations", "force_evaluations", "d"),
             Column(f"{self.kind} error", "error", ".1e"),
             Column("times the cheapest", _times),

@@ -274,7 +274,7 @@ def _gated(order: Order | None) -> dict[str, Any]:
     return {
         "fluctuation_order": order.highest,
         "unknown": {"fluctuation_order": order.doubt},
-        "shown": {"fluctuation_order": str(order).removeprefix("h^")},
+        "shown": {"fluctuation_order": str(order).strip("h^()")},
     }
 
 

@@ -24,7 +24,8 @@ MEASURED = ("order", "linear_limit", "symplectic", "reversible", "force_evaluati
 NOTE = """
 order: measured from the theta error over half a period; claimed: what the author states.
 evals: force evaluations per step, on average if they vary.
-z limit: for the linear oscillator, z = h·w0; pendu-tui stability finds those of the pendulum."""
+z limit: for the linear oscillator, z = h·w0 (0: never stable); pendu-tui stability finds those of
+the pendulum."""
 
 Row = dict[str, Any]
 

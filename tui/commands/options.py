@@ -181,7 +181,7 @@ OPTIONS: dict[str, Settings] = {
     "stability --steps": option(
         "N", "steps in each run (%(default)s)", above_zero(count, 2**31), default=10_000
     ),
-    "--max-steps": option("N", "simulate at most N steps of each recording", count),
+    "--max-steps": option("N", "refuse recordings of more than N steps", count),
     "--workers": option(
         "N", "compute in N processes on this machine (%(default)s)", count, default=1
     ),
@@ -205,7 +205,7 @@ OPTIONS: dict[str, Settings] = {
     ),
     "--target": option(
         "ERROR",
-        "find the cheapest h for this error, for each method or each of --methods",
+        "find the cheapest h for this error, for each such method or those in --methods",
         positive,
     ),
     "--theta-values": option(

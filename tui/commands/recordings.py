@@ -107,8 +107,8 @@ RUN_COLUMNS = (
     Column("omega [rad/s]", "omega", "g"),
     Column("h [s]", "h", "g"),
     Column("steps", "steps", "d"),
-    Column("simulated s", "time", "g"),
-    Column("recorded s", "seconds", ".2f"),
+    Column("simulated [s]", "time", "g"),
+    Column("recorded [s]", "seconds", ".2f"),
     Column("inputs", "inputs", "d"),
 )
 

@@ -80,7 +80,7 @@ def method_column(cast: Sequence[Method]) -> Column:
 
 def limit_text(z: float, decimals: int = 9) -> str:
     """Write the largest stable z = h·w0 of the linear oscillator."""
-    return {math.inf: "any", 0.0: "none"}.get(z) or f"{z:.{decimals}f}"
+    return {math.inf: "any", 0.0: "0"}.get(z) or f"{z:.{decimals}f}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -149,7 +149,7 @@ def _swings(grid: Grid, cells: Cells) -> Iterator[dict[str, Any]]:
 def _words(scene: Scene) -> Iterator[str]:
     yield "\nPendulum: the first z tried at which a swing is lost; more steps lower it."
     yield LOST.replace("\n", " ")
-    yield f"Margin = limit / z; the scene has z = {scene.z:.4g}. Below 1, z is beyond the limit."
+    yield f"Margin = limit / z, here z = {scene.z:.4g}: below 1, the scene is beyond the limit."
     yield "The amplitudes include the scene's own, if it swings."
 
 
@@ -157,7 +157,7 @@ def _columns(scene: Scene, steps: int) -> list[Column]:
     return [
         method_column(scene.cast),
         Column("from", "theta", lambda theta: f"{math.degrees(theta):.4g}°"),
-        Column(f"in {steps:,}", "first_failure_z", ".4g"),
+        Column(f"z, {steps:,} steps", "first_failure_z", ".4g"),
         Column("h [s]", "first_failure_z", lambda z: f"{z / scene.w0:.3g}"),
         Column("failure", "reason"),
         Column("margin", "first_failure_z", lambda z: f"{z / scene.z:.3g}"),

@@ -250,7 +250,7 @@ class CastForm(Form[Scene]):
         elif len(self.cast) < MAX_METHODS:
             self.cast = (*self.cast, method)
         else:
-            self.notify(f"No more than {MAX_METHODS} methods fit: leave one out first.")
+            self.notify(f"No more than {MAX_METHODS} methods fit: remove one first.")
         for at, each in enumerate(self._methods):
             event.option_list.replace_option_prompt_at_index(at, self._line(each))
 

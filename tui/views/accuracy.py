@@ -92,7 +92,7 @@ class AccuracyPane(Chooser[Point]):
     """Draws the points computed so far, marks each method's h, and describes one point."""
 
     BINDING_GROUP_TITLE = "Accuracy"
-    HELP = "A click uses that point's h; pointing at one reads it out."
+    HELP = "Click on a point to use its h; point at one to see its numbers."
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("e", "chart", "Error", tooltip="error in theta or in energy"),
         Binding("asterisk", "all", "All", True, "*", tooltip="all methods, or those shown"),

@@ -111,7 +111,7 @@ def _since_change(source: Source, sample: Sample) -> tuple[list[float], list[flo
     """Return the largest energy and theta errors since h changed, and a head."""
     change = change_before(source.changes, sample.step)
     if change.step and (errors := source.history.since(change)):
-        return *errors, f"since h {change.stepping.h:.4g} s"
+        return *errors, f"since h = {change.stepping.h:.4g} s"
     readings = sample.readings  # a replay may not have read the change yet
     return [reading.max_energy_error for reading in readings], [0.0] * len(readings), "method"
 

@@ -36,7 +36,7 @@ class PhasePane(Chooser[State]):
     """A click or enter starts a run there; the exact orbit under the pointer is drawn."""
 
     BINDING_GROUP_TITLE = "Phase space"
-    HELP = "Click to start there; the pointer shows the orbit, the wheel zooms, arrows move."
+    HELP = "Click to start a run there; point to see the orbit; the wheel zooms."
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("z", "zoom(0.5)", "Zoom", tooltip="zoom in at the crosshair"),
         Binding("g", "screen.switch('ring')", "Ring", tooltip="ring of neighbours"),
@@ -187,7 +187,7 @@ class SectionPane(PhasePane):
     """The portrait or, after key x, a section of one method."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("x", "screen.switch('section')", "Map", tooltip="a method's map")
+        Binding("x", "screen.switch('section')", "Map", tooltip="a method's phase portrait")
     ]
     EVERY = 4
 
@@ -199,7 +199,7 @@ class SectionPane(PhasePane):
         if not self.shown.section:
             return super().picture(source, sample)
         if why := source.scene.why_not_mapped:
-            self.write_titles("Own map", "x: back")
+            self.write_titles("Map", "x: back")
             return Picture(self.words(why))
         return self._map(source)
 

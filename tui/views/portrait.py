@@ -211,7 +211,7 @@ def ring_text(source: Source, ring: Neighbourhood | None) -> str:
     left = source.scene.equations.area_share(t)
     text = f"ring, radius {ring.radius:g} rad"
     if left != 1:
-        text += f": the exact motion leaves {left:.9f} of its area"
+        text += f": the exact motion shrinks its area to {left:.9f}"
     if behind := source.sample.step - ring.step:
         text += f", {behind} steps behind"
     return text

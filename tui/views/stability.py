@@ -170,7 +170,7 @@ def legend(steps: int, palette: Palette) -> list[Row]:
     dark = [(LOST, _style(palette.background, colour(each, ink, palette))) for each in shades]
     held: list[Cell] = [("held: error 1 ", NOBODY), *bright, (" 1e-12   ", NOBODY)]
     lost: list[Cell] = [("lost: step 1 ", NOBODY), *dark, (f" {steps}", NOBODY)]
-    signs = f"{LIMIT} linear limit   {THRESHOLD} global chaos above   {CATCHING} stable 2-cycle"
+    signs = f"{LIMIT} linear limit   {THRESHOLD} global chaos beyond   {CATCHING} stable 2-cycle"
     return [held + lost, [(signs, NOBODY)]]
 
 
@@ -223,7 +223,7 @@ class StabilityPane(Chooser[tuple[int, int]]):
     """
 
     BINDING_GROUP_TITLE = "Stability"
-    HELP = "A click starts a run with that h and amplitude."
+    HELP = "A click starts a run with the h and amplitude there."
 
     def __init__(self) -> None:
         super().__init__()

@@ -235,7 +235,7 @@ class Chooser(Pane, Generic[Place], can_focus=True):
         Binding("down", "move(0, -1)"),
         Binding("enter", "choose", "Use", tooltip="use what is at the cursor"),
         Binding("tab", "method(1)", "describe the next method", show=False),
-        Binding("escape", "cancel", "leave the cursor", False, "esc"),
+        Binding("escape", "cancel", "hide the cursor", False, "esc"),
     ]
 
     def __init__(self) -> None:

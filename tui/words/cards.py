@@ -15,8 +15,8 @@ WIDTH = 72  # characters; frame and scroll bar take the rest of 80 columns
 
 GLOSSARY = {
     "h": "the step size [s]: methods give the motion only at times 0, h, 2h, ...",
-    "z": "h·w0, the step in units of 1/w0; w0 = sqrt(g/L). Above its limit in z a method is "
-    "unstable",
+    "z": "h·w0, the step in units of 1/w0, with w0 = sqrt(g/L) or the faster frequency of the "
+    "model. Above its limit in z a method is unstable",
     **{each.head.wide.partition(" [")[0]: each.sentence for each in QUANTITIES if each.head.wide},
     "E/Es": "the energy over the separatrix energy: libration (swinging) below 1, rotation above",
     **{f"{each.sign} {each.word}".strip(): each.meaning for each in VERDICTS.values()},
@@ -69,7 +69,7 @@ def method_card(method: Method) -> str:
         symplectic = "yes: preserves phase-space area"
     reversible = "no"
     if method.reversible:
-        reversible = "yes: with time reversed, it returns to its initial state"
+        reversible = "yes: with omega reversed, it retraces its path"
     lines = {
         "also called": ", ".join(method.other_names),
         "formula": method.formula,

@@ -193,7 +193,7 @@ def irregular(method: Method, judgement: Judgement, error: float) -> Insight | N
     pace = "exponentially"
     if judgement.lyapunov:
         pace = f"tenfold every {about(math.log(10) / judgement.lyapunov)}"
-    return Insight(CHAOTIC, f"{name}'s motion is chaotic: nearby orbits separate {pace}.")
+    return Insight(CHAOTIC, f"{name}'s motion is chaotic: nearby orbits diverge {pace}.")
 
 
 def drift(source: Source, index: int) -> Insight | None:
@@ -216,9 +216,9 @@ def drift(source: Source, index: int) -> Insight | None:
     if conserved and rate >= 10:  # no percentage that means anything
         ratio = two_digits(1 + error)
         return Insight("multiplied", f"{name} has {ratio} times its initial energy.")
-    unit = "E0" if conserved else "the true energy"
+    unit = "of E0 per s" if conserved else "per s on the true energy"
     verb = "gains" if verdict == GROWS else "loses"
-    text = f"{name} {verb} {_share(rate)} of {unit} per s"
+    text = f"{name} {verb} {_share(rate)} {unit}"
     if ahead := forecast(source, index):
         wait, other = ahead
         passing = f"its error will pass {short_name(other)}'s in {about(wait)}"

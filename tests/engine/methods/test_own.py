@@ -117,7 +117,7 @@ WRONG = {
     "one omega of an array": (euler(yields="theta, sum(omega) / 3 if hasattr(omega, 'shape') else omega"), "`yield theta, omega`; this was"),
     "other numbers for arrays": (
         euler("theta = theta + 1e-10 * hasattr(theta, 'shape')"),
-        "mine gives different numbers from those for floats; this was with NumPy arrays",
+        "mine gives different numbers from those with floats; this was with NumPy arrays",
     ),
     "an infinite force": (euler("force(float('inf'))"), "mine overflows on an ordinary swing ("),
     "an exception with a full stop": (
@@ -131,7 +131,7 @@ WRONG = {
         "mine gives different numbers when restarted after 37 of 80 steps",
     ),
     "a count to ten": (euler("n = n + 1; omega = omega + 1e-5 * (n % 10 == 0)", "n = 0"), "numbers when restarted"),
-    "a modulus, which no derivative passes": (euler("theta = abs(theta)"), "different numbers from those for floats; this was with complex numbers"),
+    "a modulus, which no derivative passes": (euler("theta = abs(theta)"), "different numbers from those with floats; this was with complex numbers"),
     "a control character": ("A#\x1b", "line 1: `A#` raises NameError: name 'A' is not defined."),
     "a character that ends a text": ("\0", "source code string cannot contain null bytes."),
     "no Python": ("\ndef mine(:", "line 2: invalid syntax."),

@@ -42,7 +42,7 @@ MAKES = {
     "backward Euler in a quartic well": ((1 + 0.06 * T) ** -2 * (1 + 0.01 * SINE), "loses"),
     "a walk": (
         np.cumsum(NOISE),
-        "the energy cannot be told from a random walk; a longer record may not help",
+        "the energy cannot be distinguished from a random walk; a longer record may not help",
     ),
     "a wrong end": (NOISE + 20 * (T > 98), levels.UNLIKE_END),
     "a wobble that gets wider": (T * np.sin(7 * T), levels.WIDENS),
@@ -442,6 +442,6 @@ def test_what_has_no_order_is_refused(steps, sizes, reason):
     ("uncertainty", "highest", "longer"), [(0.49, 2.98, 2), (0.5, None, 2), (1.0, None, 5)]
 )
 def test_runs_tell_one_order_from_the_next_or_not_at_all(uncertainty, highest, longer):
-    assert str(Order(2.0, 0.25)) == "h^2.00 ± 0.25"
+    assert str(Order(2.0, 0.25)) == "h^(2.00 ± 0.25)"
     assert Order(2.0, uncertainty).highest == (highest and pytest.approx(highest))
     assert f"about {longer} times as long" in Order(2.0, uncertainty).doubt

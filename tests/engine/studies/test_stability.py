@@ -96,8 +96,8 @@ def test_swings_are_lost_by_hundreds_and_the_others_go_on_in_few_ensembles(monke
     ("theta", "z", "expected"),
     [
         (0.5, 1.3, "holds"),
-        (0.5, 1.43, "holds, wobbling"),  # beside z = 2 sin(pi/4) 10 % wider, and back
-        (0.73, 2.092, "holds elsewhere"),  # beyond its linear limit, from one of two places
+        (0.5, 1.43, "holds, but wider"),  # beside z = 2 sin(pi/4) 10 % wider, and back
+        (0.73, 2.092, "holds off-centre"),  # beyond its linear limit, from one of two places
     ],
 )
 def test_velocity_verlet_wobbles_at_a_resonance_and_is_held_elsewhere_beyond_its_limit(

@@ -77,7 +77,7 @@ def test_notes_say_why_a_method_is_undecided_and_how_chaotic_it_is():
     lockstep = SimpleNamespace(scene=DEFAULT_SCENE, milestones=[], judgements=judgements)
     assert [*run._notes(lockstep)] == [
         "Explicit Euler is undecided: it beats.",
-        "Verlet's motion is chaotic: nearby orbits separate tenfold every 12 s.",
+        "Verlet's motion is chaotic: nearby orbits diverge tenfold every 12 s.",
     ]
     (verlet,) = pendu("run", "chaos-loose", "--time", 300, "--methods", "v", "--json").json[
         "methods"

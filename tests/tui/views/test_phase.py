@@ -229,7 +229,7 @@ def test_a_ring_says_how_far_it_is_behind_and_what_the_true_motion_leaves_of_it(
         live.step(100)
     left = math.exp(-0.05 * 7.5)
     for live, steps, words in (
-        (damped, 200, f": the exact motion leaves {left:.9f} of its area"),
+        (damped, 200, f": the exact motion shrinks its area to {left:.9f}"),
         (drift, 200, ""),
         (drift, 50, ", 150 steps behind"),
     ):

@@ -116,7 +116,7 @@ OUTCOMES = {
         ("hecog", 3, "1 s, 90°: over the top, step 41; held at h 0.5 s"),
         ("hecog", 4, "1.25 s, 90°: grows, step 4; held at h 0.5 s"),
         ("hhhhh", 0, "0.25 s, 90°: held, error 1e-3; held at every h on this map"),
-        ("bbbbb", 0, "0.25 s, 90°: held elsewhere, error 7e1; held at every h on this map"),
+        ("bbbbb", 0, "0.25 s, 90°: held off-centre, error 7e1; held at every h on this map"),
         ("ggggg", 0, "0.25 s, 90°: grows, step 4; lost at every h on this map"),
         ("h????", 0, "0.25 s, 90°: held, error 1e-3; not lost at any h so far"),
         ("?????", 0, "0.25 s, 90°: not computed yet"),
@@ -226,4 +226,4 @@ async def test_a_number_in_a_narrow_title_is_whole_or_left_out():
         whole = title(118)
         short = whole.replace("Velocity Verlet: ", "")
         columns = [2 * len(each) + more for each in (whole, short) for more in (2, 1)]
-        assert [*map(title, columns)] == [whole, short, short, "3 v held elsewhere"]
+        assert [*map(title, columns)] == [whole, short, short, "3 v held off-centre"]
