@@ -504,6 +504,8 @@ class _Text:
         text = line.lstrip().rstrip(" \r")  # a tab may stand before a blank field
         if not re.search(r"[\w*]", text):
             return True  # a rule
+        if re.fullmatch(r"1\.0e[-+]\d\d +\*", text):  # MATLAB
+            raise unreadable(f"its numbers lack a factor, {text[:7]}; print them in full.")
         is_comment = text[0] in _MARKS and not _IS_FAILED.match(text)
         bare = text.lstrip(_MARKS + " \t") if is_comment else text
         fields, delimiter = self._fields(bare)
@@ -512,7 +514,7 @@ class _Text:
         if numbers.count(None) < len(fields):
             if not is_comment and len(fields) <= MAX_COLUMNS and self._row(fields, delimiter):
                 return False
-            return is_comment or numbers[0] is None
+            return is_comment or numbers[0] is None or not self._last_rows().names
         ways = _ways(bare)
         is_row = is_like and delimiter and not is_comment
         if is_row and not any(map(self._worth, chain(ways, *self._heads.values()))):
@@ -594,9 +596,10 @@ class _Text:
         width = len(fields)
         labels = [] if any(self._table.names) else [self._labelled(width)]
         for names in chain(labels, *reversed(self._heads.values())):
-            if len(names) == width - 1 and fields[-1] == "":
-                names = [*names, ""]
-            elif len(names) == width - 1 and numbers[0] is not None and known_names(names) > 1:
+            blanks = width - len(names)
+            if blanks > 0 and not any(fields[-blanks:]):
+                names = [*names, *[""] * blanks]
+            elif blanks == 1 and numbers[0] is not None and known_names(names) > 1:
                 names = ["", *names]  # the rows are numbered
             fits = any(names) and len(names) == width
             if fits and (worth := self._worth(names, numbers)) > most:

@@ -371,7 +371,7 @@ class Sheet:
         here = ~np.ma.getmaskarray(sum(sums))
         found = np.flatnonzero(here)
         *inner, missing = np.diff(found, prepend=-1, append=len(here)) - 1
-        if len(found) and missing > max(1, *inner):  # it ended, it is not only rarer
+        if len(found) and missing > 1 + max(inner):  # it ended, it is not only rarer
             here[found[-1] :] = True
         times, energies, kinetic = (total.filled(np.nan)[here] for total in sums)
         rows = len(times)
@@ -384,9 +384,7 @@ class Sheet:
         begins[_blocks(self._sum(self.marks, lines).filled(0)[here])] = True
         runs = list(islice(_runs(times, begins), MAX_SERIES))
         if self.skipped > rows:
-            why = (
-                "most of its rows differ from its header in the number of columns; keep one table."
-            )
+            why = "most rows differ from the header in the number of columns; keep one table."
             raise unreadable(why)
         if rows > 1 and len(runs) in (rows, MAX_SERIES):
             raise unreadable(NOT_LATER)
@@ -412,6 +410,7 @@ class Sheet:
         """Return the sum of some columns at the lines of the leading one, masked where one is not.
 
         What is printed belongs to the time before it, or to that after it if all come before.
+        Raises UserError if several bodies print the same.
         """
         total = np.ma.zeros(len(lines))
         for place in group:
@@ -423,7 +422,15 @@ class Sheet:
             if not self._is_printed:
                 fits &= lines[record] == own
             column = np.ma.array(np.zeros(len(lines)), mask=True)
-            column[record[fits]] = np.array(self._values[place])[fits]
+            values = np.array(self._values[place])
+            column[record[fits]] = values[fits]
+            counts = np.bincount(record[fits])[1:-1]
+            if 1 < counts.max(initial=1) == counts.min():  # or steps of an iteration
+                lags = (counts[0], 1)
+                same, other = (np.nansum(abs(values[lag:] - values[:-lag])) for lag in lags)
+                if CLEARLY * same < other:
+                    name = self.names[place]
+                    raise unreadable(f"{name} has several values at each time; keep one body.")
             total = total + column
         return total
 
@@ -523,7 +530,7 @@ class Series:
         if behind > len(times) / 10:
             raise unreadable(
                 f"its last {behind} rows are not later than {np.nanmax(times):g}; keep one run, "
-                "and print numbers without thousands separators."
+                "without thousands separators."
             )
 
     def _units(self) -> tuple[str, str]:

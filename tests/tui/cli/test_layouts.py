@@ -201,6 +201,7 @@ def test_of_the_errors_that_end_a_log_the_first_is_told(first):
 MORE = [
     ("", "Start\n" + LOOP, "t = {t}, E = {e}"),
     ("", "t,E\n", "{t},{e}\n{t}1,\n{t}2,"),
+    ("", "", "t = {t}, E = {e}\n1 O {t} {e}\n2 H {e} {t}"),
     ("", "t,E\n", "t,E\n{t},{e}\n{t}1,{e}\n{t}2,{e}"),
     ("", "t,E\n", "{t},{e}\nsaved as file"),
 ]
