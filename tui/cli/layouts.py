@@ -55,12 +55,12 @@ LAYOUTS = (
     ),
     Layout(
         programs="LAMMPS, units metal",
-        line=r"^(?:units|  Unit style +:) +metal\s*$",
+        line=r"^(?:units|  Unit style +:)\s+metal\b",
         units=("ps", "eV"),
     ),
     Layout(
         programs="LAMMPS, units real",
-        line=r"^(?:units|  Unit style +:) +real\s*$",
+        line=r"^(?:units|  Unit style +:)\s+real\b",
         units=("fs", "kcal/mol"),
     ),
     Layout(
@@ -98,8 +98,8 @@ LAYOUTS = (
         units=("ps", "kcal/mol"),
     ),
     Layout(
-        programs="CP2K's output",
-        line=rf"^ *MD\| +(?P<name>[A-Z].*?) {{2,}}{VALUE}",
+        programs="CP2K's output",  # but its SCF
+        line=rf"^ *MD\| +(?P<name>[A-Z].*?) {{2,}}{VALUE}|^ *(?P<again>Step +Update method)",
     ),
     Layout(
         programs="Quantum ESPRESSO .evp",
@@ -156,12 +156,12 @@ LAYOUTS = (
     ),
     Layout(
         programs="prints of name = value or name: value; pw.x, DFTB+, NBODY6, CP2K before 8",
-        line=r"(?<![\w.])(?:(?:INFO|DEBUG):? +|X {2,})?"
+        line=r"(?<![\w.])(?!Unnamed:)(?:(?:INFO|DEBUG)[]:]? +|X {2,})?"
         r"(?P<name>(?:\|(?=\w))?[A-Z][^\s=:,;]{,40}"
         rf"(?: +(?:[A-Z]|[\[(+] ?\w)[^\s=:,;]{{,40}}){{,5}})"
         rf"(?: *= *\"?| *: +(?!{NUMBER}[^\S\n]+[-+.\d])| +(?={NUMBER}(?: ?s)?:\s))"
         rf"(?!{_SPACED}){VALUE}"
-        rf" *[\[(]?(?P<unit>{UNIT})?(?![\w/.']|:\S|,\d| +:| *=| ?[×x*·] ?10)",
+        rf" *[\[(]?(?P<unit>{UNIT}|%|ppm)?(?![\w/.']|:\S|,\d| +:| *=| ?[×x*·] ?10)",
     ),
 )
 """The layouts, in the order in which they are tried on a line."""
@@ -170,20 +170,20 @@ ROLES = (
     ("time", r"(sim(ulat(ion|ed))?|model|md|current)time|t(ime)?sim"),
     ("time", r"time|t"),  # of the wall clock, beside these
     ("step", r"(md|time|n)?steps?(nr|number)?|nfi|ts|iter(ation)?|frame|cycle|row"),
-    ("conserved", r"econt|econserved?|cons(erved)?q(uanti)?ty|totalmdenergy|ekin\+etotconst"),
+    ("conserved", r"econ(t|served?)|cons(erved)?q(uanti)?ty|totalmdenergy|ekin\+etotconst"),
     ("conserved", r"conserved(en(ergy)?)?"),
     ("conserved", r"econs"),
-    ("total", r"e?tote(ng|ner|nergy)?|e?total(e|ene|energy)|e(nergy)?tot(al)?(n|peratom)?"),
+    ("total", r"e?tot(al)?e(ng|ne(r(gy)?)?)?(etotal)?|e(nergy)?tot(al)?(n|peratom)?"),
     ("energy", r"e|ener(gy)?|tot(al)?|mechanical(energy)?"),  # or another quantity
     (
         "kinetic",
-        r"(tot|md|current)?(ke|e?k|e?kin|kineng|e?kinetic(e|en|ene|energy)?|energykinetic|ektot)",
+        r"(tot|md|current)?(ke|e?k(in(etic)?(e(ng?|ne|nergy)?)?)?|energykinetic|ektot)",
     ),
     (
         "potential",
-        r"(current)?(pe|ep|u|e?pot|poteng|e?potential(e|en|ene|energy)?|energypotential|eptot)",
+        r"(current)?(pe|ep|u|e?pot(ential)?(e(ng?|ne|nergy)?)?|energypotential|eptot)",
     ),
-    ("error", r"(rel(ative)?)?d(elta)?ee0?|.*e0e0|(rel(ative)?)?e(nergy)?(err(or)?|drift)"),
+    ("error", r".*e0e0|(rel(ative)?)?(d(elta)?ee0?|e(nergy)?(err(or)?|drift))"),
     ("error", r"rel(ative)?err(or)?"),
     ("mark", r"method|integrator|solver|scheme|seed|units?"),
     ("other", r"temp(erature)?|press?(ure)?|vol(ume)?|density|epair"),
@@ -194,7 +194,7 @@ ROLES = (
 def key(name: str) -> str:
     """Return a name without its unit, in letters, digits and + alone, to compare it."""
     name = re.sub(r"^[\w.]+\.(?=\w{4,}$)|^[vcf]_", "", name.casefold())  # HOOMD, LAMMPS
-    return re.sub(r"[^a-z0-9+]", "", name)
+    return re.sub(r"[^a-z0-9+%]", "", name)
 
 
 @lru_cache(4096)

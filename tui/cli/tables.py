@@ -200,7 +200,7 @@ def _energy(
     if has_parts:
         is_whole = len({shown("energy", units[place]) for place in parts}) == 1 and not has_more
         return parts if is_whole and not _lacks(samples, parts, further) else None
-    return _only(best.get("error", ()))
+    return _only([place for place in best.get("error", ()) if not units[place].strip("-1")])
 
 
 def _is_other(names: Sequence[str], samples: Sequence[Any], place: int) -> bool:
@@ -470,7 +470,8 @@ class Series:
     @property
     def holds_errors(self) -> bool:
         """Whether the energies are relative errors already."""
-        return [role(self.sheet.names[place])[0] for place in self.choice.energy] == ["error"]
+        roles = [role(self.sheet.names[place])[0] for place in self.choice.energy]
+        return roles == ["error"] and not self.units[1].strip("-1")
 
     def named(self, group: Sequence[int]) -> str:
         """Return the names of columns that are added up, "row" if there is none."""

@@ -59,8 +59,8 @@ UNIT = "|".join(
 )
 """The known units, as they are written in any case."""
 _NO_UNITS = re.compile(r"kin(etic)?|pot(ential)?|tot(al)?|const", re.IGNORECASE)
-_BRACKETS = re.compile(r"(.+?)[\s/]*[(\[{]\s*([^()\[\]{}]*?)\s*[)\]}]")
-_SUFFIX = re.compile(r"(.+?)[\s_/]((?:kJ|kcal)/mol\w*|[^\s_/]{2,}|[sJ])", re.IGNORECASE)
+_BRACKETS = re.compile(r"(.+?)[\s/]*[(\[{]\s*([^()\[\]{}>]*?)\s*[)\]}]")
+_SUFFIX = re.compile(r"(.+?)(?:, |[\s_/])((?:kJ|kcal)/mol\w*|[^\s_/]{2,}|[sJ])", re.IGNORECASE)
 _TIME_NAME = re.compile(r"(?:.*[^a-z])?t|.*time", re.IGNORECASE)
 
 

@@ -18,7 +18,12 @@ CASES = {
         "TotEng   = {e:14.4f} KinEng   = {k:14.4f} Temp     =       302.7782",
         LOOP,
     ),
-    "LAMMPS, units metal": ("t ps, TotEng eV", "units metal\nt TotEng\n", "{t} {e:12.4f}", LOOP),
+    "LAMMPS, units metal": (
+        "t ps, TotEng eV",
+        "units\t\tmetal # eV\nt TotEng\n",
+        "{t} {e:12.4f}",
+        LOOP,
+    ),
     "LAMMPS, units real": (
         "Time fs, TotEng kcal/mol",
         "  Unit style    : real\n   Step  Time  TotEng\n",
@@ -70,7 +75,10 @@ CASES = {
     "CP2K's output": (
         "Time fs, Conserved quantity hartree",
         "",
-        " MD| Step number {n:60}\n MD| Time [fs] {t:62}\n MD| Conserved quantity [hartree] {e:46}",
+        " MD| Step number {n:60}\n MD| Time [fs] {t:62}\n MD| Conserved quantity [hartree] {e:46}\n"
+        "  Step     Update method      Time    Convergence         Total energy    Change"
+        + 5
+        * "\n     2 OT DIIS     0.80E-01    0.6     0.00010113    {p:.10f} -1.00E-03",
     ),
     "Quantum ESPRESSO .evp": (
         "time ps, econt hartree",

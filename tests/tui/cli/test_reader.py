@@ -138,6 +138,16 @@ def columns(series: Series) -> str | None:
         ("", "time {t} s: total energy = {e}", "time s, total energy"),
         ("", "time {t}\ntotal  energy {e} kinetic  energy {k}", None),
         ("", "time {t}\nE = {k} (E = {e})", None),
+        (
+            "",
+            "energy(sigma->0) = {k}\ntotal energy  ETOTAL = {e} eV",
+            "row, total energy  ETOTAL eV",
+        ),
+        ("", "[info] t={t} n={n} E={e}", "t, E"),
+        ("Time, ps;Total energy, eV", "{t};{e}", "Time ps, Total energy eV"),
+        ("Unnamed: 0,t,E", "{n},{t},{e}", "t, E"),  # pandas
+        *((f"t,{name}", "{t},{e}", None) for name in ("dE/E (ppm)", "e err %", "e drift (eV)")),
+        ("", "t={t} energy drift: {e} %", None),
     ],
 )
 def test_columns_are_guessed_only_where_names_leave_no_doubt(head, form, found):
@@ -646,6 +656,8 @@ def test_what_the_owner_says_is_applied():
     assert (list(series.kinetic), series.diverged_at) == ([k for *_, k in SAMPLES], 45.0)
     (series,) = tables(rows("{e}"), step=(2.0, "ps"), units={"energy": "eV"})
     assert (series.times[1], series.units) == (2.0, ("ps", "eV"))
+    (series,) = tables("t,dE/E [%]\n" + rows("{t},{e}"), energy="dE/E")
+    assert not series.holds_errors
     *_, series = tables(TABLE + "time,energy\n[ps],[eV]\n" + rows("{t},{e}"))
     assert (series.units, series.skipped) == (("ps", "eV"), 0)
 
