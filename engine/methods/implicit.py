@@ -125,7 +125,7 @@ IMPLICIT_MIDPOINT = Method(
     "fails if Newton's method, to 1e-12 rad with two evaluations per iteration, finds no solution. "
     "A step on a spring has a closed form, counted as one evaluation.",
     modified_energy=implicit_midpoint_modified_energy,
-    models=("pendulum", "linear", "spring"),
+    models=(*Method.models, "spring"),
 )
 
 FAMILY = (BACKWARD_EULER, IMPLICIT_MIDPOINT)

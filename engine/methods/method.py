@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, NamedTuple
 
+from pendu_tui.engine.models import STUDIED
 from pendu_tui.engine.models.model import Model, Offer, Phase, Sine
 
 Phases = Callable[[Any, Phase, float], Iterator[Phase]]
@@ -86,7 +87,7 @@ class Method:
     takes: Offer = "force"  # what `phases` takes of a model
     # the same method for models that offer something else, or that first
     others: Mapping[Offer, Phases] = field(default_factory=dict, hash=False)
-    models: tuple[str, ...] = ("pendulum", "linear")  # keys of the models that it integrates
+    models: tuple[str, ...] = STUDIED  # keys of the models that it integrates
     any_numbers: bool = True  # also arrays, complex and mpmath numbers
     longest_substep: float = 1.0  # of a symplectic splitting, in steps: chaos begins there first
     epsilon: float = 2.0**-53  # the relative error of a rounding

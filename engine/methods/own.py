@@ -94,7 +94,7 @@ def own_method(source: str, key: str, letter: str, file: str, measured: Measured
         letter=letter,
         phases=on_force(function),
         others=others,
-        models=("pendulum", "linear", "damped") if others else ("pendulum", "linear"),
+        models=(*Method.models, "damped") if others else Method.models,
         formula=(function.__doc__ or "").strip().partition("\n")[0],
         order=max(0, round(measured.order or 0)),
         force_evaluations=max(1, math.ceil(measured.force_evaluations)),

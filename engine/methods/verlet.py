@@ -85,7 +85,7 @@ VELOCITY_VERLET = Method(
     reference=f"{HAIRER}, I.1.4",
     used="molecular dynamics: the default of LAMMPS [docs.lammps.org, run_style]",
     modified_energy=velocity_verlet_modified_energy,
-    models=("pendulum", "linear", "spring"),
+    models=(*Method.models, "spring"),
 )
 
 POSITION_VERLET = Method(
@@ -104,7 +104,7 @@ POSITION_VERLET = Method(
     reference=f"{HAIRER}, VI.3.1",
     used="planets: REBOUND, integrator leapfrog [rebound.readthedocs.io, Integrators]",
     modified_energy=position_verlet_modified_energy,
-    models=("pendulum", "linear", "spring"),
+    models=(*Method.models, "spring"),
 )
 
 FAMILY = (VELOCITY_VERLET, POSITION_VERLET)

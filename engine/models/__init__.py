@@ -15,6 +15,9 @@ MODELS: dict[str, type[Model]] = {
 
 DEFAULT_MODEL = Pendulum.key
 
+STUDIED = tuple(key for key, model in MODELS.items() if not model.without_force)
+"""The models that maps and studies apply to; every general method integrates them."""
+
 NUMBERS: dict[str, Number] = {
     each.name: each
     for each in (*COMMON, *(own for model in MODELS.values() for own in model.parameters))

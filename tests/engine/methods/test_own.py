@@ -13,6 +13,7 @@ import pytest
 from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods import TAYLOR_20, VELOCITY_VERLET, family_of, method_of
 from pendu_tui.engine.methods.own import MAX_SOURCE, USER_CODE, OwnMethodError, TooLongError
+from pendu_tui.engine.models import STUDIED
 from pendu_tui.engine.run.lockstep import Lockstep
 from pendu_tui.engine.scenes import SCENES
 from tests.own_methods import VERLET, load
@@ -74,7 +75,7 @@ def mine(rates, phase, h):
 def test_a_method_that_takes_rates_integrates_friction_too():
     mine = load(RATES)
     assert (mine.order, mine.force_evaluations, mine.first_same_as_last) == (1, 1, False)
-    assert mine.models == ("pendulum", "linear", "damped")
+    assert mine.models == (*STUDIED, "damped")
     assert all(pickle.loads(pickle.dumps(each)) is each for each in (mine, TAYLOR_20))
     with pytest.raises(OwnMethodError, match=r"file of the method mine: .* --method FILE\.py:mine"):
         pickle.dumps(replace(VELOCITY_VERLET, key="mine"))

@@ -113,6 +113,7 @@ def test_a_model_says_what_is_special_about_its_motion(model):
     assert model.conserves_energy == kept
     single, double = (model.exact(theta, 0.0).at(0.7).theta for theta in (1.0, 2.0))
     assert model.is_linear == (double == pytest.approx(2 * single))
+    assert "force" in model.offers or model.without_force
     assert model.has_separatrix == (model.key == "pendulum")
     assert {*map(type, Pendulum(9.81).observe(np.float32((1, 2)))[:2])} == {float}
 
