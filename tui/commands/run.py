@@ -43,7 +43,9 @@ MAX_POINTS = 20_000  # samples for a figure
 MAX_PARTS = 400  # of a figure, each drawn as its largest error
 
 Row = dict[str, Any]
-RECORDED = [each.name for each in quantities.RECORDED if each.recorded == "always"]
+APART = (*quantities.EXTREMES, quantities.DIVERGED_AT.name, quantities.INVARIANT.name)
+"""Recorded fields that have another place in --json, or none."""
+RECORDED = [each.name for each in quantities.RECORDED if each.name not in APART]
 
 
 def run(options: Namespace) -> int:

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from pendu_tui.engine import quantities
 from pendu_tui.engine.run.verdicts import Judgement, Progress
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from pendu_tui.recordings.recording import Recording
@@ -157,6 +158,9 @@ def test_csv_has_the_numbers_of_json_under_their_names_also_where_a_method_has_f
     rows = list(csv.DictReader(pendu(*one_fails, "--csv").out.splitlines()))
     methods = pendu(*one_fails, "--json").json["methods"]
     assert [row["diverged_at"] for row in rows] == ["0.7", ""]
+    # also what is recorded, except extremes and an invariant that a pendulum has not
+    missing = [each.name for each in quantities.RECORDED if each.name not in rows[0]]
+    assert missing == [*quantities.EXTREMES, "max_invariant_error"]
     for row, fields in zip(rows, methods, strict=True):
         del fields["progress"]
         assert row == {name: "" if fields[name] is None else str(fields[name]) for name in fields}
