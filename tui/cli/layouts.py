@@ -38,7 +38,7 @@ class Layout:
     programs: str
     line: str = r"(?!)"
     units: tuple[str, str] = ("", "")  # of times and energies without one
-    file: str = r"(?!)"  # the end of the name of a file whose first columns are `columns`
+    file: str = ""  # the end of the name of a file whose first columns are `columns`
     columns: tuple[str, ...] = ()
     cells: str = ""  # finds each of the names, if neither blanks nor commas part them
 
@@ -136,7 +136,7 @@ LAYOUTS = (
     ),
     Layout(
         programs="GPUMD, which writes neither names nor times",
-        file=r"thermo\.out",
+        file="thermo.out",
         columns=("temperature (K)", "kinetic (eV)", "potential (eV)"),
     ),
     Layout(

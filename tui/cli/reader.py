@@ -327,7 +327,7 @@ class _Text:
         """
         self._heads: dict[str, list[list[str]]] = {}  # lines of words, divided in ways
         self._units = ("", "")  # of times and energies, if the layout has only these
-        named = (each.columns for each in LAYOUTS if re.search(f"{each.file}$", file))
+        named = (each.columns for each in LAYOUTS if each.file and file.endswith(each.file))
         self._labels = dict(enumerate(next(named, ())))  # names of columns by place
         self._passed = 0  # columns of earlier sets
         self._shared = ""  # the only unit of xmgrace's y axis

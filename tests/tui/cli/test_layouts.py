@@ -176,7 +176,7 @@ def test_each_role_has_many_names_and_the_best_comes_first():
 def test_each_layout_reads_its_case(layout):
     found, head, row, *foot = CASES[layout.programs]
     text = "".join([head, rows(row), *foot])
-    series = tables(gzip.compress(text.encode()), "thermo.out.gz" if layout.file else "")[-1]
+    series = tables(gzip.compress(text.encode()), layout.file and f"{layout.file}.gz")[-1]
     assert columns(series) == found
     assert list(series.energies) == pytest.approx(ENERGIES, abs=0.006)
     assert (len(series.times), series.skipped) == (90, 0)
