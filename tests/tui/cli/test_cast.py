@@ -35,7 +35,7 @@ def cast_from(*arguments: str) -> Cast:
 @pytest.mark.parametrize(
     ("text", "keys"),
     [
-        ("s,vel,explicit_e", "symplectic_euler velocity_verlet explicit_euler"),
+        ("symp,vel,explicit_e", "symplectic_euler velocity_verlet explicit_euler"),
         ("Leapfrog,symplectic-euler", "velocity_verlet symplectic_euler"),
         ("stormer verlet,RK2", "velocity_verlet heun"),
         ("yoshida,implicit euler", "yoshida_6 backward_euler"),

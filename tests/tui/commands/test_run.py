@@ -28,7 +28,7 @@ from tests.tui.command_line import own_method, pendu
         ("run --time 2 --h 0.1 --record new.mcap", 21, 0, 20),
         ("export a", 10, 0, 4.0),
         ("run --theta 1,2,3 --time 1", 3, 1, 3),
-        ("accuracy --time 1 --h-values 0.2:0.1:2 --target 0.1 --json", 21, 5, 255),
+        ("accuracy --time 1 --h-values 0.2:0.1:2 --target 0.1 --methods rk4,heun", 6, 5, 60),
         ("stability --steps 9 --theta-values 1 --z-values 1,2 --methods rk4,heun", 2, 1, 2),
     ],
 )
