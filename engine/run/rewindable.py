@@ -87,8 +87,8 @@ class RewindableRun:
         return math.inf
 
     def sample(self, resets: bool = True) -> Sample:
-        """Return the present readings; repeated steps reset no extremes."""
-        resets = resets and self.step >= self.furthest
+        """Return the present readings; at a step before the last reset, extremes are not reset."""
+        resets = resets and self.step >= self._reset
         self.furthest = max(self.furthest, self.step)
         if resets:
             self._reset = self.step

@@ -256,6 +256,15 @@ def test_a_change_undone_before_the_next_step_takes_no_verdict_away(tmp_path):
     assert verify(tmp_path / "lab.mcap").identical
 
 
+def test_going_back_to_behind_the_last_recorded_sample_spoils_no_later_one(tmp_path):
+    lab = Lab(speed=256.0, record=tmp_path / "lab.mcap")
+    for _ in range(9):
+        lab.run(0.1)
+        lab.live.seek(lab.live.playhead.position - 1.0)  # less than from sample to sample
+    lab.live.close()
+    assert verify(tmp_path / "lab.mcap").identical
+
+
 def test_an_absurd_step_size_is_refused_and_changes_nothing():
     bench = Bench()
     lab = bench.live
