@@ -337,13 +337,18 @@ class Stage(Pane):
             return
         drag = self._drag
         self.release_mouse()
-        self._down = None
-        self._drag = []
+        self.on_mouse_release()
         if drag:
-            self.post_message(Held(None))
             self._throw(drag, event.time)
         elif (place := self._place_at(event)) is not None:
             await self.run_action(f"screen.show_alone({place})")
+
+    def on_mouse_release(self) -> None:
+        """Let go, also when a dialog or another view has taken the mouse away."""
+        if self.app.mouse_captured is not self:
+            self._down = None
+            self._drag = []
+            self.post_message(Held(None))
 
     def _throw(self, drag: Sequence[tuple[float, float]], now: float) -> None:
         """Start a run from the last angle, at the pointer's speed over the last 0.1 s."""

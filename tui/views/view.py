@@ -171,6 +171,9 @@ class Pane(CellWidget):
             lines[rows - 1] = f"{lines[rows - 1][: width - 2]} …"
         return [[(line, TEXT)] for line in lines[:rows]]
 
+    def on_hide(self) -> None:
+        self.release_mouse()  # or no mouse event would reach anything
+
     def on_mouse_scroll_up(self, event: events.MouseEvent) -> None:
         self.wheel(event, 0.8)
 

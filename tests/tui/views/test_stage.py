@@ -132,6 +132,18 @@ async def test_all_are_dragged_together_and_start_at_rest_where_they_are_let_go(
             assert stage.border_subtitle == below
 
 
+@pytest.mark.parametrize("away, back", [("f3", "f2"), ("question_mark", "escape")])
+async def test_what_covers_a_held_pendulum_lets_it_go(away, back):
+    async with lab() as theatre:
+        await theatre.pilot.mouse_down(Stage, offset=(12, 9))
+        await theatre.pilot.hover(Stage, offset=(20, 9))
+        assert theatre.stage.shown.held is not None
+        await theatre.press(away, back)
+        await theatre.pilot.hover(Stage, offset=(12, 9))
+        assert theatre.stage.shown.held is None
+        assert theatre.app.mouse_captured is None
+
+
 async def test_a_thrown_bob_has_the_speed_of_the_pointer():
     fastest = 5 * SCENES["drift"].w0
     async with lab() as theatre:
