@@ -178,7 +178,7 @@ def text_rows(text: str, ink: int, cast: Cast, width: int, height: int | None = 
     """
     whole = "|".join([r"\d: ", *(method.label for method in cast)])
     glued = re.sub(whole, lambda found: found[0].replace(" ", "\xa0"), text)
-    lines = textwrap.wrap(glued, width - 2, max_lines=height, placeholder=" …")
+    lines = textwrap.wrap(glued, width - 1, max_lines=height, placeholder=" …")
     return [[(" ", ink), *painted(line.replace("\xa0", " "), cast, ink)] for line in lines]
 
 

@@ -111,11 +111,17 @@ def test_no_line_of_a_sentence_ends_within_a_name_or_after_an_answers_number():
     cast = DEFAULT_SCENE.cast
 
     def lines(words: str, height: int | None = None) -> list[str]:
-        return [text(row) for row in text_rows(words, TEXT, cast, 17, height)]
+        return [text(row) for row in text_rows(words, TEXT, cast, 16, height)]
 
     wrapped = [" Watch", " Explicit Euler.", " 1: It gains.", " 2: It"]
     assert lines("Watch Explicit Euler. 1: It gains. 2: It") == wrapped
     assert lines("RK4 loses what Verlet keeps", 1) == [" RK4 loses …"]
+
+
+def test_what_to_watch_fits_a_line_of_a_terminal_of_80_columns():
+    for scene in SCENES.values():
+        (row,) = text_rows(scene.watch, TEXT, scene.cast, 80)
+        assert text(row) == f" {scene.watch}"
 
 
 def test_why_something_failed_is_told_without_a_folder():
