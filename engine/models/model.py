@@ -219,7 +219,7 @@ COMMON = (
         min=-1e9,
         max=1e9,
         read=angle,
-        hint=", or 90deg",
+        hint=", or 90deg/s",
         metavar="RAD_S",
     ),
     Number("length", "m", "length in m", min=1e-6, max=1e6, default=1.0, metavar="M"),

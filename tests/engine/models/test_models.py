@@ -37,7 +37,7 @@ def test_every_model_has_a_scene_and_no_two_a_number_of_the_same_name():
 def test_the_numbers_of_a_scene_have_the_units_of_its_equations_and_limits():
     known = [
         ("theta", "rad", -1e9, 1e9, 1, start_angle, ", or 115deg", "RAD|DEGdeg", math.inf),
-        ("omega", "rad/s", -1e9, 1e9, 0, angle, ", or 90deg", "RAD_S", math.inf),
+        ("omega", "rad/s", -1e9, 1e9, 0, angle, ", or 90deg/s", "RAD_S", math.inf),
         ("length", "m", 1e-6, 1e6, 1, number, "", "M", math.inf),
         ("gravity", "m/s²", 1e-6, 1e6, 9.81, number, "", "M_S2", math.inf),
         ("h", "s", 0, math.inf, 0.05, seconds, ", the step size", "S", math.inf),

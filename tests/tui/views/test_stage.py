@@ -132,7 +132,7 @@ async def test_all_are_dragged_together_and_start_at_rest_where_they_are_let_go(
             assert stage.border_subtitle == below
 
 
-@pytest.mark.parametrize("away, back", [("f3", "f2"), ("question_mark", "escape")])
+@pytest.mark.parametrize(("away", "back"), [("f3", "f2"), ("question_mark", "escape")])
 async def test_what_covers_a_held_pendulum_lets_it_go(away, back):
     async with lab() as theatre:
         await theatre.pilot.mouse_down(Stage, offset=(12, 9))
