@@ -6,6 +6,7 @@ current sample is the last point, whether it is a row or not.
 
 import math
 from collections.abc import Sequence
+from copy import copy, deepcopy
 from operator import attrgetter
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -58,6 +59,14 @@ class History:
         self._waiting: list[Row] = []
         self._rows: Rows | None = None
         self._modified_starts: dict[SteppingChange, list[float]] = {}
+
+    def continued(self, changes: Sequence[SteppingChange]) -> "History":
+        """Return a copy for a run that goes on with these changes."""
+        copied = copy(self)
+        copied.changes = changes
+        copied._rows = deepcopy(self._filled)
+        copied._waiting = []
+        return copied
 
     def add(self, sample: Sample, is_row: bool = True) -> None:
         """Make this the current sample, and keep it if it is a row.

@@ -4,7 +4,6 @@ import math
 import time
 from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
-from copy import copy
 from typing import TYPE_CHECKING
 
 from pendu_tui.engine.run.lockstep import Lockstep, Sample
@@ -150,8 +149,7 @@ class Replay(Source):
         Raises RecordingError if the run has a user's own method that was not given.
         """
         check_present(self.scene)
-        history = copy(self.history)
-        history.changes = self._past_changes
+        history = self.history.continued(self._past_changes)
         return Live(self.scene, abs(self.playhead.speed), history=history)
 
     def close(self) -> None:

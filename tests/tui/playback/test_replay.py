@@ -308,6 +308,8 @@ def test_a_lab_that_goes_on_from_here_knows_what_was_known(lab):
     window = live.history.window()
     assert window.t[-4:] - replay.sample.t == pytest.approx([0.0, -0.1, -0.2, -0.3])
     assert window.x[-4:] - window.x[-4] == pytest.approx([0.0, 0.1, 0.2, 0.3])
+    replay.step(3)  # in whose past the lab has left nothing
+    assert (np.diff(replay.history.rows["step"]) > 0).all()
 
 
 def test_it_shows_the_verdicts_that_were_recorded_and_not_those_of_this_version(lab, tmp_path):
