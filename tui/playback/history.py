@@ -61,10 +61,13 @@ class History:
         self._modified_starts: dict[SteppingChange, list[float]] = {}
 
     def continued(self, changes: Sequence[SteppingChange]) -> "History":
-        """Return a copy for a run that goes on with these changes."""
+        """Return the past of a lab's first run, which goes on from here with these changes."""
         copied = copy(self)
         copied.changes = changes
+        copied.sample = self.sample._replace(run=1)
+        copied._last_row = self.step
         copied._rows = deepcopy(self._filled)
+        copied._rows.truncate(self.step)
         copied._waiting = []
         return copied
 

@@ -218,6 +218,22 @@ def test_a_change_of_h_counts_from_its_moment_between_steps_and_in_a_pause(tmp_p
     assert steps == [(0.3, 3), (0.3, 2), (0.2, 1), (0.5, 0)]
 
 
+@pytest.mark.parametrize(("ahead", "seconds"), [(1.9, 1.0), (8.0, 6.0)])
+def test_the_past_of_a_lab_that_goes_on_from_here_is_that_of_the_replay(replay, ahead, seconds):
+    replay.seek(ahead)
+    replay.fill()
+    replay.seek(seconds)
+    live = replay.live()
+    errors = [each.history.window().high["energy_error"] for each in (replay, live)]
+    np.testing.assert_array_equal(*errors)
+    live.change(Stepping(0.04))
+    live.step(3)
+    passed = live.history.window().t[-4:] - replay.sample.t
+    assert passed == pytest.approx([0.0, 0.04, 0.08, 0.12])  # and nothing that was recorded later
+    replay.step(3)
+    assert (np.diff(replay.history.rows["step"]) > 0).all()  # nor is anything of the lab here
+
+
 @pytest.mark.parametrize("seconds", [4.7, 11.0])
 def test_a_lab_that_goes_on_from_here_has_the_same_bits(replay, seconds):
     replay.seek(seconds)
@@ -308,8 +324,6 @@ def test_a_lab_that_goes_on_from_here_knows_what_was_known(lab):
     window = live.history.window()
     assert window.t[-4:] - replay.sample.t == pytest.approx([0.0, -0.1, -0.2, -0.3])
     assert window.x[-4:] - window.x[-4] == pytest.approx([0.0, 0.1, 0.2, 0.3])
-    replay.step(3)  # in whose past the lab has left nothing
-    assert (np.diff(replay.history.rows["step"]) > 0).all()
 
 
 def test_it_shows_the_verdicts_that_were_recorded_and_not_those_of_this_version(lab, tmp_path):
