@@ -61,13 +61,11 @@ class History:
         self._modified_starts: dict[SteppingChange, list[float]] = {}
 
     def continued(self, changes: Sequence[SteppingChange]) -> "History":
-        """Return the past of a lab's first run, which goes on from here with these changes."""
+        """Return a copy from which a lab's run with these changes branches off."""
         copied = copy(self)
         copied.changes = changes
-        copied.sample = self.sample._replace(run=1)
-        copied._last_row = self.step
+        copied.sample = self.sample._replace(run=0)  # no run of a lab
         copied._rows = deepcopy(self._filled)
-        copied._rows.truncate(self.step)
         copied._waiting = []
         return copied
 
@@ -75,11 +73,11 @@ class History:
         """Make this the current sample, and keep it if it is a row.
 
         Going back keeps the later rows.  A sample of another run, which branched off here, drops
-        all rows from its step on.
+        them; its extremes may be those of the whole run.
         """
-        if self.step >= 0 and sample.run != self.sample.run:
-            self._last_row = sample.step - 1
-            self._filled.truncate(self._last_row)
+        branches = self.step >= 0 and sample.run != self.sample.run
+        if branches:
+            self._last_row = self._filled.truncate(sample.step)
         change = change_before(self.changes, sample.step)
         if change not in self._modified_starts and change.step <= self.step < sample.step:
             self._modified_starts[change] = self._modified_energies(self.sample, change.stepping)
@@ -87,7 +85,7 @@ class History:
         self.step = sample.step
         if is_row and sample.step > self._last_row:
             self._last_row = sample.step
-            self._waiting.append(self._row(sample, with_extremes=True))
+            self._waiting.append(self._row(sample, with_extremes=not branches))
             if len(self._waiting) >= 64:  # the first paint does not wait for NumPy
                 _ = self._filled
 

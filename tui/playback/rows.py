@@ -96,10 +96,12 @@ class Rows:
         self._recent[:half] = self._recent[half:]
         self._count -= half
 
-    def truncate(self, step: int) -> None:
-        """Drop the rows after a step; long ago, the whole wide row."""
+    def truncate(self, step: int) -> int:
+        """Drop the rows after a step (long ago, the whole wide row); return that of the last."""
         self._wide = _up_to(step, self._wide)
         self._count = len(_up_to(step, self._recent[: self._count]))
+        kept = (self._wide, self._recent[: self._count])
+        return max((int(rows["step"][-1]) for rows in kept if len(rows)), default=-1)
 
     def before(self, step: int) -> Records:
         """Return the recent rows before a step."""
