@@ -127,8 +127,8 @@ def _try(results: "Connection", source: str, key: str, file: str) -> None:
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     watchdog().tell = tell
-    results.send(None)
-    with suppress(KeyboardInterrupt):  # only a user's code raises it
+    with suppress(KeyboardInterrupt, OSError):  # a user's code raises it; nobody reads any more
+        results.send(None)
         try:
             results.send(examined(own_function(source, key, file), f"{file}: {key}"))
         except OwnMethodError as error:

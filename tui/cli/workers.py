@@ -132,7 +132,9 @@ def workers_of(options: argparse.Namespace) -> Iterator[Run]:
 
         def run(function: Callable[[Any], Any], tasks: Iterable[Any]) -> Iterator[Any]:
             try:
-                yield from executor.map(function, list(tasks))
+                # not by `map`, which cancels: Python 3.11 prints a traceback for a cancelled task
+                futures = [executor.submit(function, task) for task in tasks]
+                yield from (future.result() for future in futures)
             except (InputError, OwnMethodError):
                 raise
             except Exception as error:

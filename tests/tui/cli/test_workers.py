@@ -3,6 +3,7 @@
 import argparse
 import os
 import sys
+import time
 from itertools import repeat
 from pathlib import Path
 from types import SimpleNamespace
@@ -63,7 +64,7 @@ class Lost:
     def __init__(self, count, *_):
         self.count = count
 
-    def map(self, *_):
+    def submit(self, *_):
         raise RuntimeError(f"the last of {self.count}.")
 
     def shutdown(self, wait=True):
@@ -81,9 +82,19 @@ def test_workers_are_at_most_four_a_processor_and_to_lose_them_is_an_error(monke
         assert outcome.refused(3, f"the workers are lost (RuntimeError: the last of {count}).")
     assert ended == ["one"] * 4
     assert os.environ["PYTHONSAFEPATH"] == "1"
-    monkeypatch.setattr(Lost, "map", Mock(side_effect=OwnMethodError("mine fails.")))
+    monkeypatch.setattr(Lost, "submit", Mock(side_effect=OwnMethodError("mine fails.")))
     assert pendu(*RUNS, "--workers", 2).refused(3, "pendu-tui: mine fails.")
     assert pendu(*RUNS, "--workers", 1).code == 0
+
+
+@pytest.mark.filterwarnings("error")  # of a thread that fails
+def test_an_interrupt_ends_the_workers_also_while_tasks_wait():
+    options = argparse.Namespace(workers=2, dask=None, output=None)
+    with work_of(options, "runs", 9) as work:
+        work.step()
+        for _ in work.run(time.sleep, [0.0, *[60.0] * 8]):
+            raise KeyboardInterrupt
+    assert work.conclude() == 130
 
 
 @pytest.mark.slow
