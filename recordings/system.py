@@ -76,10 +76,14 @@ def rename(source: Path, target: Path) -> None:
 
 
 def is_reserved(name: str) -> bool:
-    """Return whether no file can have this name, as con.mcap on Windows; NUL alone is a device."""
+    """Return whether no file can have this name, as con.mcap or 19:44.mcap on Windows.
+
+    NUL alone is a device.
+    """
     device, dot, _ = name.lower().partition(".")
     devices = r"con|prn|aux|nul|(com|lpt)[1-9¹²³]"
-    return sys.platform == "win32" and dot == "." and bool(re.fullmatch(devices, device.strip()))
+    is_device = dot == "." and bool(re.fullmatch(devices, device.strip()))
+    return sys.platform == "win32" and (is_device or ":" in name)
 
 
 def quoted(words: list[str]) -> str:

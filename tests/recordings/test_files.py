@@ -111,8 +111,8 @@ def test_a_file_can_be_written_in_a_folder_under_a_free_name(tmp_path, monkeypat
         files.check_target(tmp_path / "free.mcap")
 
 
-@pytest.mark.parametrize("name", ["con.mcap", "LPT1.csv", "nul .svg"])
-def test_a_name_that_windows_keeps_for_a_device_is_refused_there(tmp_path, monkeypatch, name):
+@pytest.mark.parametrize("name", ["con.mcap", "LPT1.csv", "nul .svg", "19:44.csv"])
+def test_a_name_that_no_file_of_windows_has_is_refused_there(tmp_path, monkeypatch, name):
     monkeypatch.setattr(sys, "platform", "win32")
     with pytest.raises(DiskError, match="not a file name"):
         files.check_target(tmp_path / name)

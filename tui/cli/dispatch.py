@@ -195,4 +195,4 @@ def keep_results_apart() -> None:
         return
     results = os.dup(1)
     os.dup2(2, 1)
-    sys.stdout = os.fdopen(results, "w", encoding=stdout.encoding, errors="replace")
+    sys.stdout = os.fdopen(results, "w", encoding=stdout.encoding, errors="replace", newline="\n")

@@ -362,7 +362,7 @@ def test_a_run_is_judged_when_it_is_an_eighth_longer():
         if judge.judgement.slope != slope:
             judgements.append(step)
     assert judgements == [64, 72, 82, 94, 106, 120, 136, 156]  # with bins of 2, then 4 looks
-    assert judge.judgement.slope == pytest.approx(156 / 0.1, rel=0.02)
+    assert judge.judgement.slope == pytest.approx(156 / 0.1, rel=0.03)  # which rounding decides
 
 
 @needs_rounded_sine

@@ -5,13 +5,14 @@ import string
 import subprocess
 from dataclasses import replace
 from pathlib import Path
+from unittest.mock import Mock
 
 import pytest
 
 from pendu_tui.engine.inputs import InputError
 from pendu_tui.engine.methods import METHODS, RK4, TAYLOR_20, USUAL_CAST, Cast, named
 from pendu_tui.engine.methods.own import OwnMethod
-from pendu_tui.tui.cli.cast import cast_of, own_method_at
+from pendu_tui.tui.cli.cast import _try, cast_of, own_method_at
 from pendu_tui.tui.cli.scene import scene_of
 from pendu_tui.tui.commands.options import parser_of
 from tests.tui.command_line import EULER, PENDU, ROOT, pendu
@@ -105,6 +106,12 @@ def test_a_method_that_cannot_be_tried_is_refused_with_a_sentence(
     assert pendu("run", "--time", "2", "--method", "hostile.py").refused(3, "hostile.py", why)
 
 
+def test_a_trial_ends_in_silence_if_the_command_has_ended(monkeypatch):
+    for name in ("signal.signal", "pendu_tui.tui.cli.watchdog.watchdog"):
+        monkeypatch.setattr(name, Mock())
+    _try(Mock(send=Mock(side_effect=BrokenPipeError)), "", "mine", "mine.py")
+
+
 def test_what_a_method_prints_is_not_among_the_results_and_its_threads_end_with_the_command(
     tmp_path,
 ):
@@ -120,6 +127,7 @@ print("C")
     ended = subprocess.run(command, capture_output=True, timeout=30, check=False, cwd=ROOT)
     assert ended.returncode == 0, ended.stderr
     assert json.loads(ended.stdout)["schema"].startswith("pendu.run/")
+    assert b"\r" not in ended.stdout  # also on Windows
     assert all(letter in ended.stderr for letter in (b"A", b"B", b"C"))
 
 

@@ -30,7 +30,7 @@ def test_what_matplotlib_is_asked_to_draw(snapshot, tmp_path, monkeypatch):
     texts = []
     for line, suffix in zip(STUDIES.splitlines(), ("SVG", "svg", "pdf", "png"), strict=True):
         matplotlib.reset_mock()
-        assert pendu(*line.split(), "-o", tmp_path / f"a.{suffix}").code == 0
+        assert pendu(*line.split(), "--force", "-o", tmp_path / f"a.{suffix}").code == 0
         texts += ["", f"$ {line}", *map(str, matplotlib.mock_calls)]
     drawn = []
     with monkeypatch.context() as long:
