@@ -94,7 +94,7 @@ class EnergyDrift(_Checks):
         self._properties += [("order", order.power), ("order_uncertainty", order.uncertainty)]
         if order.highest is None:
             pytest.fail(order.doubt)
-        if order.highest < at_least:
+        if not order.highest >= at_least:
             pytest.fail(
                 f"the energy fluctuates as {order}, not as h^{at_least:g}: "
                 "smaller steps do not improve the runs as they should"

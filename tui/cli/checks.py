@@ -89,7 +89,7 @@ def parse(
     source = " ".join(text.split())
     grammar = _Grammar(fields, cast, words)
     with given_by("--fail-if"):
-        source = re.sub(r"([\d.])\s*%", r"\1e-2", source)
+        source = re.sub(r"([\d.])(?:[eE]([-+]?\d{1,3}))?\s*%", _hundredth, source)
         if "#" in source:  # a comment would hide what follows
             raise grammar.no_comparison(source)
         try:
@@ -150,6 +150,10 @@ def _word(sign: ast.cmpop, node: ast.expr, field: str, words: Sequence[str]) -> 
     return word
 
 
+def _hundredth(percent: re.Match[str]) -> str:
+    return f"{percent[1]}e{int(percent[2] or 0) - 2}"
+
+
 def _number(node: ast.expr) -> float:
     text = ast.unparse(node)
     value = math.nan
@@ -195,7 +199,7 @@ def _found(
     if not (is_unknown or compare(ours, limit)):
         return ""
     if not isinstance(ours, str):
-        return f"{name} is {reading.get('shown', {}).get(field) or format(ours, '.3g')}"
+        return f"{name} is {reading.get('shown', {}).get(field) or format(ours, 'g')}"
     return ": ".join(filter(None, (f"{name} is {ours}", reading.get("reason"))))
 
 

@@ -69,8 +69,17 @@ def flag(help: str) -> Settings:
     return {"action": "store_true", "help": help}
 
 
+class AnyOf(argparse.Action):
+    """Joins the expressions of a repeated option by `or`."""
+
+    def __call__(self, parser: Any, options: Any, text: Any, flag: Any = None) -> None:
+        before = getattr(options, self.dest)
+        setattr(options, self.dest, text if before is None else f"({before}) or ({text})")
+
+
 def gate(meaning: str) -> Settings:
-    return option("EXPR", f"exit with 1 if the expression is true{meaning}")
+    help = f"exit with 1 if the expression is true (repeatable){meaning}"
+    return option("EXPR", help, action=AnyOf)
 
 
 def with_suffix(*suffixes: str) -> Callable[[str], Path]:

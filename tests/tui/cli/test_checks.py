@@ -26,7 +26,7 @@ def readings(**of_rk4: object) -> dict[str, dict[str, object]]:
 
 @given(st.sampled_from(KEYS), st.sampled_from(PLAIN), st.sampled_from(SIGNS), numbers, numbers)
 def test_a_comparison_is_that_of_python(key, field, sign, value, number):
-    found = f"{key}.{field} is {value:.3g}" if eval(f"{value!r} {sign} {number!r}") else ""
+    found = f"{key}.{field} is {value:g}" if eval(f"{value!r} {sign} {number!r}") else ""
     assert parse(f"{key}.{field}{sign}{number!r}")({key: HEALTHY | {field: value}}) == found
 
 
@@ -52,6 +52,7 @@ def test_a_verdict_is_compared_with_one_of_its_words(word, verdict):
 
 SHORT = {"verdict": "undecided", "reason": "short"}
 LARGE = {"max_energy_error": 0.004, "verdict": "loses"}
+TWICE_LARGE = "rk4.max_energy_error is 0.004, rk4.max_energy_error is 0.004"
 
 
 @pytest.mark.filterwarnings("error")  # about odd code, such as `3or`
@@ -68,6 +69,7 @@ LARGE = {"max_energy_error": 0.004, "verdict": "loses"}
         ("rk4.energy > 1", SHORT | {"slope": None}, "cannot tell: rk4 cannot be judged: short"),
         ("RK.max_energy_error > 0.3 %", LARGE, "rk4.max_energy_error is 0.004"),
         ("RK.max_energy_error > 0.5 %", LARGE, ""),
+        ("RK.max_energy_error > 3e-1% and RK.max_energy_error < 0.5E0 %", LARGE, TWICE_LARGE),
         ("any.verdict == loses", LARGE, "rk4.verdict is loses"),
         ("all.verdict == bounded", LARGE, ""),
         (

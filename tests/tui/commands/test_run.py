@@ -153,6 +153,15 @@ def test_an_interrupt_keeps_what_is_done(monkeypatch, command, rows, share, fiel
     assert (answer["interrupted"], len(answer[field])) == (True, count)
 
 
+def test_of_a_repeated_gate_each_counts_and_a_bounded_energy_has_a_drift():
+    command = ("run", "--time", 20, "--methods", "verlet")
+    passing = ("--fail-if", "any.drift_per_second > 1e-3")
+    assert pendu(*command, *passing, *passing).code == 0
+    failing = ("--fail-if", "any.energy > 0")
+    for gates in ((*passing, *failing), (*failing, *passing)):
+        assert pendu(*command, *gates).code == 1
+
+
 def test_csv_has_the_numbers_of_json_under_their_names_also_where_a_method_has_failed():
     one_fails = ("run", "--theta", 3, "--h", 0.7, "--time", 7, "--methods", "implicit_m,verlet")
     rows = list(csv.DictReader(pendu(*one_fails, "--csv").out.splitlines()))
