@@ -35,9 +35,12 @@ def judge_record(times: Any, energies: Any, failed: bool = False) -> Judgement:
 
 
 def bins_of(times: Any, energies: Any, rounding: float) -> Bins:
-    """Return blocks of equally many samples."""
+    """Return blocks of equally many samples; of equal time, if those would last unequally long."""
     count = min(levels.MAX_BINS, len(times) // 4 * 2)
     begins = np.arange(count) * len(times) // count
+    lengths = np.diff(times[begins], append=times[-1])
+    if lengths.max() > levels.UNEVEN * lengths.min():
+        begins = _begins_in_time(times, count, begins)
     sizes = np.diff(begins, append=len(times))
     means = np.add.reduceat(energies, begins) / sizes
     squares = np.add.reduceat((energies - np.repeat(means, sizes)) ** 2, begins) / sizes
@@ -50,6 +53,15 @@ def bins_of(times: Any, energies: Any, rounding: float) -> Bins:
         rounding=rounding,
         white=math.sqrt((squares / (sizes - 1)).mean()),
     )
+
+
+def _begins_in_time(times: Any, count: int, default: Any) -> Any:
+    """Return where blocks of equal time and two or more samples begin, if they are not too few."""
+    begins = [0]
+    for begin in np.searchsorted(times, np.linspace(times[0], times[-1], count + 1)).tolist():
+        if begins[-1] + 2 <= begin <= len(times) - 2:
+            begins.append(begin)
+    return default if len(begins) < levels.MIN_BLOCKS else np.array(begins)
 
 
 def resolution(energies: Any) -> float:

@@ -334,6 +334,25 @@ def test_an_open_trend_says_how_much_longer_would_decide(energies, factor):
     assert told(energies).endswith(f"; a record {factor} times as long would settle it")
 
 
+UNEVEN = {
+    "ever longer steps": np.geomspace(1, 1000, 2000),
+    "ever shorter steps": 1001 - np.geomspace(1, 1000, 2000)[::-1],
+    "a solver that starts carefully": np.cumsum(np.minimum(1e-6 * 1.05 ** np.arange(2000), 1)),
+}
+
+
+@pytest.mark.parametrize("name", UNEVEN)
+def test_a_wobble_is_bounded_at_uneven_times(name):
+    times = UNEVEN[name]
+    for cycles in (5.3, 11, 23, 40, 70, 120.5):
+        wobble = np.cos(math.tau * cycles * (times - times[0]) / np.ptp(times))
+        assert judge_record(times, wobble).verdict == "bounded"
+
+
+def test_a_long_pause_leaves_as_many_blocks():
+    assert len(bins_of(T + 1000 * (T > 50), NOISE, 1e-12).means) == 64
+
+
 def test_nobody_is_told_to_compute_a_hundred_times_as_long():
     part = core.Part(bins_around(NOISE[:64]), NOISE[:64])
     ratio = 3 * part.slope.uncertainty * part.length / part.width
