@@ -14,7 +14,6 @@ from pendu_tui.engine.models.model import (
     Number,
     Phase,
     Rates,
-    Regime,
     Sine,
     Step,
     compose_verlet,
@@ -62,15 +61,6 @@ class DampedPendulum(Pendulum):
 
     def exact_step(self) -> tuple[Step, float]:
         return compose_verlet(self.force(), self.friction), 0.05 / max(self.w0, self.friction)
-
-    def regime(self, theta: float, omega: float) -> Regime:
-        """Return rotation as long as the energy is enough."""
-        energy = self.energy()((theta, omega))
-        if energy == 0:
-            return "equilibrium"
-        if energy < 2 * self.w0_squared:
-            return "libration"
-        return "rotation"
 
     def area_share(self, t: float) -> float:
         return math.exp(-self.friction * t)

@@ -160,7 +160,8 @@ class MeanField(Model):
         return mean_field_energy
 
     def exact_step(self) -> tuple[Step, float]:
-        return compose(partial(strang, self)), 0.4 / self.fastest
+        strongest = math.sqrt(self.w0_squared + abs(self.coupling))
+        return compose(partial(strang, self)), 0.4 / max(self.fastest, 4 * strongest)
 
 
 def _length(phase: Phase) -> float:

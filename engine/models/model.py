@@ -115,6 +115,8 @@ WEIGHTS = (*_HALF, -0.60550853383003451170, *_HALF[::-1])
 """Of a composition of order 8: Kahan & Li, Math. Comput. 66 (1997) 1089."""
 
 ACCURACY = 1e-10  # rad, of theta, with the steps that the models give it
+STEP_OF_A_TURN = 0.4  # rad
+MAX_SPEED = 800  # w0; beyond, turns take too many steps, and gravity does little
 EVERY = 64  # steps from one kept phase to the next
 
 
@@ -348,8 +350,14 @@ class Model(ABC):
         return ExactMotion(at, self.regime(theta, omega), accuracy=ACCURACY)
 
     def regime(self, theta: float, omega: float) -> Regime:
-        """Return the kind of motion from theta [rad] and omega [rad/s]."""
-        return "libration"
+        """Return rotation as long as the energy is enough."""
+        energy = self.energy()
+        start = energy(self.start(theta, omega))
+        if start == energy(self.rest_phase(0.0)):
+            return "equilibrium"
+        if start < energy(self.rest_phase(math.pi)):
+            return "libration"
+        return "rotation"
 
     def exact_phase(self, theta: float, omega: float, t: float) -> Phase:
         """Return the phase at a time [s] by steps of order 8."""
@@ -379,4 +387,6 @@ class Model(ABC):
 @lru_cache
 def _reference(model: Model, theta: float, omega: float) -> Reference:
     step, h = model.exact_step()
+    speed = min(max(abs(omega), model.w0), MAX_SPEED * model.w0)
+    h = min(h, STEP_OF_A_TURN / speed)
     return Reference(step, model.start(theta, omega), h)

@@ -13,7 +13,7 @@ from pendu_tui.engine.inputs import angle, number, seconds, start_angle
 from pendu_tui.engine.models import MODELS, NUMBERS, Model, Pendulum
 from pendu_tui.engine.models.damped import DampedPendulum
 from pendu_tui.engine.models.mean_field import MeanField
-from pendu_tui.engine.models.model import ACCURACY, Reference
+from pendu_tui.engine.models.model import ACCURACY, Reference, _reference
 from pendu_tui.engine.models.spring import Spring
 from pendu_tui.engine.quantities import ENERGY_ERROR
 from tests.models import EQUATIONS, EXAMPLES
@@ -151,14 +151,28 @@ def test_times_come_in_any_order_and_few_steps_are_taken_twice():
         assert (reference.at(t), len(taken)) == (t, steps)  # one phase in 64 steps is kept
 
 
-@pytest.mark.parametrize("friction", [1.0, 100.0])
-def test_the_exact_motion_is_right_at_any_friction(friction):
-    model = DampedPendulum(9.81, friction)
+@pytest.mark.parametrize(
+    ("model", "omega"),
+    [
+        (DampedPendulum(9.81, 1.0), 0.0),
+        (DampedPendulum(9.81, 100.0), 0.0),
+        (DAMPED, -60.0),
+        (Spring(9.81, 100.0), 50.0),
+        (MeanField(9.81, 200.0, 0.1), 0.0),
+        (MeanField(9.81, -2.0, 0.1), -20.0),
+    ],
+)
+def test_the_exact_motion_is_right_at_any_friction_speed_and_coupling(model, omega):
     step, h = model.exact_step()
-    finer = Reference(step, (2.0, 0.0), h / 2)
-    exact = model.exact(2.0, 0.0)
-    times = [n / friction for n in range(20)]
-    assert max(abs(exact.at(t).theta - finer.at(t)[0]) for t in times) < ACCURACY / 2
+    finer = Reference(step, model.start(2.0, omega), min(h / 2, 5e-4))
+    exact = model.exact(2.0, omega)
+    for n in range(20):
+        theta = model.observe(finer.at(n / 20)).theta
+        assert abs(model.theta_error(exact.at(n / 20).theta, theta)) < ACCURACY / 2
+
+
+def test_the_exact_motion_takes_no_endless_time():
+    assert _reference(DAMPED, 0.0, -1e9)._h > 1e-4
 
 
 def test_an_error_is_the_logarithm_of_the_energy_over_the_true_one():
@@ -178,14 +192,18 @@ def test_an_error_is_the_logarithm_of_the_energy_over_the_true_one():
     assert np.isfinite(DampedPendulum(9.81, 20.0).reference(2.0, 0.0).errors(-1000.0, 10.0)).all()
 
 
-def test_with_friction_energy_decides_the_regime_and_area_shrinks():
+def test_energy_decides_the_regime_and_with_friction_area_shrinks():
     just = 2 * math.sqrt(9.81)
-    for start, regime in (
-        ((0.0, 0.999 * just), "libration"),
-        ((0.0, 1.001 * just), "rotation"),
-        ((0.0, 0.0), "equilibrium"),
+    bound = math.sqrt(2 * (2 * 9.81 - 2))  # the two levels may help as much as the coupling
+    for model, omega, regime in (
+        (DAMPED, 0.999 * just, "libration"),
+        (DAMPED, 1.001 * just, "rotation"),
+        (DAMPED, 0.0, "equilibrium"),
+        (MEAN_FIELD, 0.999 * bound, "libration"),
+        (MEAN_FIELD, 1.001 * bound, "rotation"),
+        (MEAN_FIELD, 0.0, "libration"),
     ):
-        exact = DAMPED.exact(*start)
+        exact = model.exact(0.0, omega)
         assert (exact.regime, exact.period) == (regime, None)
     assert DAMPED.area_share(4.0) == pytest.approx(math.exp(-0.8))
     assert Pendulum(9.81).area_share(4.0) == 1.0
