@@ -70,8 +70,9 @@ def resolution(energies: Any) -> float:
     differences = np.diff(np.unique(energies))
     differences = differences[differences > rounding]
     jumps = (np.abs(np.diff(energies)) > rounding).sum()
-    repeat = 0 < len(differences) < len(energies) / 2 and jumps >= levels.MIN_JUMPS
-    return float(differences.min()) if repeat else rounding
+    repeat = 0 < len(differences) < len(energies) / 2
+    are_digits = repeat and (jumps >= levels.MIN_JUMPS or jumps == len(differences))
+    return float(differences.min()) if are_digits else rounding
 
 
 class Fluctuation(NamedTuple):

@@ -360,8 +360,11 @@ def test_nobody_is_told_to_compute_a_hundred_times_as_long():
         assert longer in part.why_not_bounded(ahead=math.sqrt(factor) / ratio)
 
 
-def test_a_digit_is_a_jump_that_comes_three_times():
+def test_a_digit_is_a_jump_that_comes_three_times_or_never_back():
     assert resolution(NOISE) < 1e-14
+    assert resolution(np.arange(100) // 50) == 1
+    slow = judge_record(T, np.round(1000 + T / 150))
+    assert slow.bound > 1 / 600  # half the true slope
     energies = np.zeros(100)
     energies[40:50] = 1
     assert resolution(energies) < 1e-14
