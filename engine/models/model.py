@@ -65,12 +65,12 @@ class EnergyReference(NamedTuple):
     """What the energy errors of a run are relative to."""
 
     start: float  # s⁻², the energy at the start
-    scale: float  # s⁻², the same, or 2 w0² where that is zero
+    scale: float  # s⁻², its size, or 2 w0² where that is zero
     true: Callable[[float], float] | None = None  # energy [s⁻²] at a time [s], if not conserved
     least: float = 1e-300  # s⁻²; energies below are mostly rounding, and are replaced by it
 
     def errors(self, t: float, *energies: float) -> list[float]:
-        """Return (E - E0)/E0 for each energy at a time [s]; ln(E/E_true) if not conserved."""
+        """Return (E - E0)/|E0| for each energy at a time [s]; ln(E/E_true) if not conserved."""
         if self.true is None:
             return [(energy - self.start) / self.scale for energy in energies]
         true = self._log(self.true(t))
@@ -333,7 +333,7 @@ class Model(ABC):
         """Return what energy errors from theta [rad] and omega [rad/s] are relative to."""
         energy = self.energy()
         start: float = energy(self.start(theta, omega))
-        scale = start if start > 0 else 2 * self.w0_squared
+        scale = abs(start) or 2 * self.w0_squared
         if self.conserves_energy:
             return EnergyReference(start, scale)
         least = max(1e-24 * min(self.w0_squared, scale), 1e-300)  # of 1e-12 rad

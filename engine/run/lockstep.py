@@ -28,7 +28,7 @@ from pendu_tui.engine.scenes import Scene
 class Reading(NamedTuple):
     """One method at one step; a diverged one stays at its last finite numbers.
 
-    Energy errors are (E - E0)/E0, or (E - E0)/(2 w0²) where E0 = 0, or with friction ln(E/E_true).
+    Energy errors are (E - E0)/|E0|, over 2 w0² where E0 = 0, or with friction ln(E/E_true).
     """
 
     theta: float  # rad, unwrapped

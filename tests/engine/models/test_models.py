@@ -183,6 +183,8 @@ def test_an_error_is_the_logarithm_of_the_energy_over_the_true_one():
     assert reference.errors(30.0, true * math.e, 0.0) == pytest.approx(expected)
     assert reference.least == 1e-24 * 9.81
     assert DAMPED.reference(0.0, 0.0)[:2] == (0, 2 * 9.81)
+    below = MeanField(9.81, -8.0, 20.0).reference(1.0, 0.0)
+    assert below.scale == -below.start > 0
     small = DAMPED.reference(1e-3, 0.0)
     assert small.least == 1e-24 * small.scale < 1e-29
     assert DAMPED.reference(1e-157, 0.0).least == 1e-300
