@@ -24,7 +24,6 @@ AHEAD = 10.0  # times its length for which a bounded run must stay in its band
 # Numbers:
 MAX_BINS = 64
 MIN_SAMPLES = 64
-MIN_BLOCKS = 16  # of equal time
 UNEVEN = 3.0  # times as long as the shortest: even samples make blocks up to twice as long
 MIN_JUMPS = 3  # of energies that repeat: once there and back is no digit
 WINDOWS = (1.0, 0.5, 0.25, 0.125)  # shares of the bins, up to the end, in which it may move

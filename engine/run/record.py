@@ -61,7 +61,7 @@ def _begins_in_time(times: Any, count: int, default: Any) -> Any:
     for begin in np.searchsorted(times, np.linspace(times[0], times[-1], count + 1)).tolist():
         if begins[-1] + 2 <= begin <= len(times) - 2:
             begins.append(begin)
-    return default if len(begins) < levels.MIN_BLOCKS else np.array(begins)
+    return default if len(begins) < count / 4 else np.array(begins)
 
 
 def resolution(energies: Any) -> float:
