@@ -5,7 +5,7 @@ b(theta) = (sin theta, 0, cos theta), and the pendulum feels the expectation val
 
     theta' = omega,  omega' = -w0² sin theta - kappa b'(theta)·s,  s' = nu b(theta) × s
 
-Energy and |s|, the total probability, are conserved for any nu: Tully, Faraday Discuss. 110
+Energy and |s| are conserved for any nu: Tully, Faraday Discuss. 110
 (1998) 407.
 """
 
@@ -68,13 +68,13 @@ class MeanField(Model):
         Quantity(
             "probability_error",
             about="length of the Bloch vector - 1; the true motion keeps it at 0",
-            chart=Chart("probability error |s| - 1"),
+            chart=Chart("length of the Bloch vector - 1"),
         ),
     )
     extra_columns = (
         ExtraColumn(
             "|s|",
-            "probability",
+            "length |s|",
             "the length of the Bloch vector, which the true motion keeps at 1",
             lambda extra: 1 + extra["probability_error"],
         ),

@@ -45,14 +45,14 @@ VERDICTS: dict[str, Verdict] = {
             sign="+",
             ink="text",
             meaning="the mean energy has risen for good; if it has levelled off, "
-            "the trend shown is that since then",
+            "the trend shown starts there",
         ),
         Verdict(
             LOSES,
             sign="-",
             ink="text",
             meaning="the mean energy has fallen for good; if it has levelled off, "
-            "the trend shown is that since then",
+            "the trend shown starts there",
         ),
         Verdict(
             CHAOTIC,

@@ -121,7 +121,7 @@ _STABILITY = (
         length=_UNIT_W0,
         h=2.80,
         speed=8.0,
-        watch="Just below z = 2√2: RK4 halves its energy in 4 steps; the rest go over the top.",
+        watch="Just below z = 2√2: RK4 halves its energy in 4 steps; others go over the top.",
         shot=Shot(
             log=False,
             seconds=60.0,
@@ -264,7 +264,7 @@ _PRECISION = (
         h=1 / 1024,
         cast=_PRECISE,
         speed=4.0,
-        watch="In 64 bits theta is off by 0.1 rad at 35 s; with compensated sums by 3e-4 rad.",
+        watch="In 64 bits theta is off by 0.1 rad at 35 s; with compensated sums by < 3e-4.",
         shot=Shot(quantity="theta_error"),
     ),
 )
@@ -282,7 +282,7 @@ _LEARNING = (
             "rk4",
         ),
         speed=8.0,
-        watch="Learned field and map lose 60 % of E0 in 100 s; Learned H and SympNet, < 1 %.",
+        watch="Learned field and map lose 60 % of E0 in 100 s; H and SympNet stay within 1 %.",
         often_said='"A learned Hamiltonian conserves energy." Only the learned energy: '
         "the true one is off by up to a percent.",
         # the field lies on the map, H on SympNet
@@ -296,7 +296,7 @@ _MEAN_FIELD = (
         model="mean_field",
         cast=_cast("rk4", "mean_field_splitting"),
         speed=4.0,
-        watch="RK4's energy is good to 4e-4, but total probability falls by 15 % in a minute.",
+        watch="RK4's energy is good to 4e-4, but the Bloch vector shrinks by 15 % in a minute.",
         shot=Shot(quantity="probability_error", log=False),
     ),
 )

@@ -144,7 +144,7 @@ stability:
 euler-caught 60 3.142 110 110 E0 Explicit energy 110
 verlet-limit 16 60 43.56 linear v below 2 11 Verlet loses 98 energy
 verlet-limit-above 16 0.6 60 21.62 0.48 rad linear v above 2 Verlet 0.48
-rk4-limit 8 60 22.4 -0.5 half linear r below 2 2 RK4 energy 4 rest over
+rk4-limit 8 60 22.4 -0.5 half linear r below 2 2 RK4 energy 4 over
 rk4-limit-above 8 0.25 linear r above 2 2 RK4 holds 0.2
 chaos-fenced 64 3.142 3.223 pi/h omega phase sv 0.95
 chaos-loose 2048 3.142 5.991 2 pi/h omega phase sv 1.1 2
@@ -162,7 +162,7 @@ precision-deep 4 theta_error nvk 64 bits 0.1 35 3 4
 learning:
 learned 8 belief jzgtr ztr lose 60 100 1
 mean field:
-mean-field 4 probability_error linear rx RK4 energy 4 4 falls by 15
+mean-field 4 probability_error linear rx RK4 energy 4 4 15
 """
 
 

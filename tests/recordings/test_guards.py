@@ -1,6 +1,7 @@
 """The gates of the pytest plugin on right and broken integrators."""
 
 from contextlib import contextmanager
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -59,6 +60,7 @@ def energy_gate():
     [
         (stale, r"^stale: its order is 1\.0"),
         (kicks(second=0.0), "no order: its error stays above"),
+        (kicks(second=0.5001), r"order 0\.006"),
         (kicks(dropped=40), "when restarted after"),
     ],
 )
@@ -78,6 +80,24 @@ def test_a_right_method_passes_and_each_of_its_properties_is_compared():
     ):
         with failing(f"^step: {has}"):
             method_gate.check(RIGHT, **{name: claim})
+
+
+def swings(step):
+    """Return the runs of a method at two step sizes: a swing from 1 rad."""
+    for h in (0.05, 0.1):
+        q, p = np.array([*islice(step(lambda q: -np.sin(q), (1.0, 0.0), h), 3000)]).T
+        yield h, h * np.arange(3000), p**2 / 2 + 1 - np.cos(q)
+
+
+def test_the_order_of_a_fluctuation_sees_a_forgotten_half_kick_but_not_a_slight_one(energy_gate):
+    slight = [*swings(kicks(second=0.5001))]
+    energy_gate.check_order(slight, at_least=1.8)
+    energy_gate.check(*slight[0][1:], max_error=1e-3)
+    forgotten = [*swings(kicks(second=0.0))]
+    with failing(r"as h\^\(0\."):
+        energy_gate.check_order(forgotten, at_least=1.8)
+    with failing("the error is"):
+        energy_gate.check(*forgotten[0][1:], max_error=1e-3)
 
 
 def run(h, seed=0, count=1200):

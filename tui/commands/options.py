@@ -162,7 +162,7 @@ OPTIONS: dict[str, Settings] = {
     ),
     "--speed": option("X", "multiple of real time (default: the scene's; replay: 1)", positive),
     "--equal-cost": flag(
-        "give all methods the same number of force evaluations: cheaper ones take smaller steps"
+        "give all methods the same number of force evaluations: costlier ones take longer steps"
     ),
     "--start-at": option(
         "S", "start S seconds into the recording (%(default)g)", number, default=0.0
@@ -214,7 +214,7 @@ OPTIONS: dict[str, Settings] = {
     ),
     "--target": option(
         "ERROR",
-        "find the cheapest h for this error, for each such method or those in --methods",
+        "find the cheapest h for this error, for each method of --all or of --methods",
         positive,
     ),
     "--theta-values": option(

@@ -65,7 +65,7 @@ def test_the_numbers_of_a_scene_have_the_units_of_its_equations_and_limits():
         (
             "mean_field",
             "-w0² sin theta - kappa b'·s, s' = nu b × s; parts rates; force; nu; 3; "
-            "probability error |s| - 1",
+            "length of the Bloch vector - 1",
         ),
     ],
 )
@@ -87,7 +87,7 @@ def test_a_model_adds_columns_to_readings():
     length = pytest.approx(abs(SPRING.start(1.0, 0.5)[0]))
     energy = pytest.approx(2500 * 0.04**2 / 2, rel=1e-2)
     spring = {"length": ("length", length), "spring": ("spring E", energy)}
-    assert columns == spring | {"|s|": ("probability", 1.0)}
+    assert columns == spring | {"|s|": ("length |s|", 1.0)}
 
 
 @each_model
