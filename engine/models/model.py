@@ -115,8 +115,7 @@ WEIGHTS = (*_HALF, -0.60550853383003451170, *_HALF[::-1])
 """Of a composition of order 8: Kahan & Li, Math. Comput. 66 (1997) 1089."""
 
 ACCURACY = 1e-10  # rad, of theta, with the steps that the models give it
-STEP_OF_A_TURN = 0.4  # rad
-MAX_SPEED = 800  # w0; beyond, turns take too many steps, and gravity does little
+MAX_SPEED = 800  # w0; beyond, gravity does little
 EVERY = 64  # steps from one kept phase to the next
 
 
@@ -355,9 +354,7 @@ class Model(ABC):
         start = energy(self.start(theta, omega))
         if start == energy(self.rest_phase(0.0)):
             return "equilibrium"
-        if start < energy(self.rest_phase(math.pi)):
-            return "libration"
-        return "rotation"
+        return "libration" if start < energy(self.rest_phase(math.pi)) else "rotation"
 
     def exact_phase(self, theta: float, omega: float, t: float) -> Phase:
         """Return the phase at a time [s] by steps of order 8."""
@@ -388,5 +385,4 @@ class Model(ABC):
 def _reference(model: Model, theta: float, omega: float) -> Reference:
     step, h = model.exact_step()
     speed = min(max(abs(omega), model.w0), MAX_SPEED * model.w0)
-    h = min(h, STEP_OF_A_TURN / speed)
-    return Reference(step, model.start(theta, omega), h)
+    return Reference(step, model.start(theta, omega), min(h, 0.4 / speed))  # 0.4 rad

@@ -24,8 +24,8 @@ AHEAD = 10.0  # times its length for which a bounded run must stay in its band
 # Numbers:
 MAX_BINS = 64
 MIN_SAMPLES = 64
-UNEVEN = 3.0  # times as long as the shortest: even samples make blocks up to twice as long
-MIN_JUMPS = 3  # of energies that repeat: once there and back is no digit
+UNEVEN = 3.0  # times the shortest block; even samples: 2 at most
+MIN_JUMPS = 3  # of energies that repeat: there and back is no digit
 WINDOWS = (1.0, 0.5, 0.25, 0.125)  # shares of the bins, up to the end, in which it may move
 RESTS = (0.75, 0.625, 0.5, 0.375, 0.25)  # shares up to the end in which it may rest
 ENDS = (8, 16, 32)  # parts of the bins of which the last must be like the others

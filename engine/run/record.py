@@ -40,7 +40,7 @@ def bins_of(times: Any, energies: Any, rounding: float) -> Bins:
     begins = np.arange(count) * len(times) // count
     lengths = np.diff(times[begins], append=times[-1])
     if lengths.max() > levels.UNEVEN * lengths.min():
-        begins = _begins_in_time(times, count, begins)
+        begins = _begins_in_time(times, begins)
     sizes = np.diff(begins, append=len(times))
     means = np.add.reduceat(energies, begins) / sizes
     squares = np.add.reduceat((energies - np.repeat(means, sizes)) ** 2, begins) / sizes
@@ -55,13 +55,14 @@ def bins_of(times: Any, energies: Any, rounding: float) -> Bins:
     )
 
 
-def _begins_in_time(times: Any, count: int, default: Any) -> Any:
+def _begins_in_time(times: Any, default: Any) -> Any:
     """Return where blocks of equal time and two or more samples begin, if they are not too few."""
     begins = [0]
-    for begin in np.searchsorted(times, np.linspace(times[0], times[-1], count + 1)).tolist():
+    edges = np.linspace(times[0], times[-1], len(default) + 1)
+    for begin in np.searchsorted(times, edges).tolist():
         if begins[-1] + 2 <= begin <= len(times) - 2:
             begins.append(begin)
-    return default if len(begins) < count / 4 else np.array(begins)
+    return default if len(begins) < len(default) / 4 else np.array(begins)
 
 
 def resolution(energies: Any) -> float:
