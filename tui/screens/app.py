@@ -90,7 +90,7 @@ class PenduApp(App[Exit | BaseException]):
 
         Notices have no markup, because units are in brackets, and name files as they are named.
         """
-        self.clear_notifications()
+        self.call_later(self.clear_notifications)  # after the last one has come
         super().notify(printable(message, limit=1000), **{**options, "markup": False})
 
     def finish(self) -> None:

@@ -88,9 +88,11 @@ async def test_notices_lie_on_the_insight_line_and_replace_each_other(snapshot, 
         (refused,) = app._notifications
         assert "not a usable" in refused.message
         assert (refused.severity, refused.markup, refused.timeout) == ("warning", False, 15)
+        app.notify("replaced before it is shown")
         app.notify("\x1b[2J" + 996 * "x")
         await pilot.pause()
-        assert [*app._notifications][-1].message == "\N{REPLACEMENT CHARACTER}[2J" + 996 * "x"
+        (shown,) = app._notifications
+        assert shown.message == "\N{REPLACEMENT CHARACTER}[2J" + 996 * "x"
         assert [event.kind for event in live.events].count("mark") == 1
 
 
