@@ -43,7 +43,7 @@ async def test_words_are_found_by_their_beginnings_in_names_and_sentences():
         assert theatre.app.screen.query_one(Input).value == "scene x"
         await theatre.press("escape")
         for words, first, number in (
-            ("scene probab", "scene mean-field", 1),  # a word of what it shows
+            ("scene bloch", "scene mean-field", 1),  # a word of what it shows
             ("PIXELS half", "pixels half", 1),
             ("double", "double speed", None),  # before scenes in whose sentences it is
             ("ouble speed", None, 0),
