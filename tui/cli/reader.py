@@ -61,6 +61,7 @@ _HAS_POINT = re.compile(r"(?<![\w.])[-+]?\d*\.(?:\d{1,2}|\d{4,})(?![\d.])")
 _IS_FAILED = re.compile(FAILED, re.IGNORECASE)
 _WITH_UNIT = re.compile(rf"\s*({NUMBER})\s?({UNIT})\s*", re.IGNORECASE)
 _DATE = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d")
+_BRACKETED = re.compile(r"\s*\(\s*[-+]?[.\d][^()]*\)\s*")
 _GLUED = re.compile(r"[-+*](?<=\d.)(?:(?<!\*)(?=\d)|(?<=\*)(?=\*))")  # to the number before
 _OBJECT = re.compile(r'\{(?:"|\w[^:=]*$)')  # that may be broken
 _MARKS = "#@!%;"  # of comments
@@ -281,17 +282,17 @@ class _Table(Sheet):
         self.cells: dict[int, str] = {}  # the units in its fields
         self.page: dict[str, list[list[str]]] = {}  # its head, which may be repeated on each page
 
-    def like_last(self, line: str) -> list[str] | None:
-        """Return the fields of a line that looks like the last row, None of another."""
+    def like_last(self, line: str) -> list[str]:
+        """Return the fields of a line that looks like the last row, none of another."""
         delimiter, width, opening = self.form
         fields = _split(line, delimiter)
         if opening and len(fields) != width:
             fields = _split(_GLUED.sub(r" \g<0>", line), delimiter)
         is_like = len(fields) == width and line.startswith(opening)
         if not is_like or line.lstrip()[:1] in _MARKS:
-            return None
+            return []
         if self.cells and _units_in(fields) != self.cells:
-            return None
+            return []
         return fields
 
     def values(self, fields: list[str]) -> list[float | None]:
@@ -300,6 +301,11 @@ class _Table(Sheet):
         for place in self.marks:
             values[self.kept.index(place)] = zlib.crc32(fields[place].encode())
         return values
+
+    def note_brackets(self, fields: list[str]) -> None:
+        for place in self.kept:
+            if _BRACKETED.fullmatch(fields[place]):
+                self.bracketed[place] = fields[place].strip()
 
     def put_odd(self, line: int, numbers: Sequence[float | None], opening: str) -> None:
         """Add what is certain of a row that is not quite like the others, or count it."""
@@ -393,6 +399,8 @@ class _Text:
         if self._heads:
             table.heads.append(self._line)
             self._heads.clear()
+        if "(" in line:
+            table.note_brackets(fields)
         table.put(self._line, table.kept, values)
         return True
 
@@ -549,6 +557,7 @@ class _Text:
         if not is_row:
             self._last_rows().put_odd(self._line, numbers, opening)
             return False
+        table.note_brackets(fields)
         table.put(self._line, table.kept, table.values(fields))
         for place, unit in _units_in(fields).items():
             table.check_unit(place, unit, self._line)

@@ -274,6 +274,7 @@ class Sheet:
         self.places: dict[str, int] = {}  # of columns by name
         self.wanted = wanted
         self.mixed: dict[int, str] = {}  # columns in two units, and where
+        self.bracketed: dict[int, str] = {}  # columns with (42), and that
         self._is_printed = is_printed
         self._once: dict[str, tuple[str, int, float]] = {}  # what was printed only once
         self._lines: list[array[int]] = []  # of the values of each column
@@ -544,6 +545,9 @@ class Series:
         for place in self.choice.columns:
             if place in self.sheet.mixed:
                 raise unreadable(self.sheet.mixed[place])
+            if place in self.sheet.bracketed and place not in time:
+                cell = self.sheet.bracketed[place]
+                raise unreadable(f"{cell} may be negative or an uncertainty; leave out brackets.")
         if {*time} & {*energy}:
             raise UserError(
                 f"{self.named(time)} is both the time and an energy; name another column."
@@ -579,8 +583,7 @@ class Series:
         if len(known) > 1:
             raise UserError(
                 f"the units of {self.named(group)}{' and the energy' * len(energies)} differ "
-                f"({', '.join(known)}); "
-                "use columns of one unit, or convert them first."
+                f"({', '.join(known)}); use columns of one unit, or convert them first."
             )
         return units.pop() if len(units) == 1 else ""
 

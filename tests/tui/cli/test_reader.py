@@ -84,6 +84,7 @@ def columns(series: Series) -> str | None:
         ("x,E", "{b},{e}", None),  # bodies
         ("x,E", "{f},{e}", "row, E"),
         ("x,E", "{b}.5,{e}", "row, E"),
+        ("n E error", "({n}) [{e}] (3)", "n, E"),
         ("KE,E", "{b},{e}", "row, E"),
         ("t,KE,Ekin", "{t},{k},{p}", None),
         ("t,KE (eV),PE (J)", "{t},{k},{p}", None),
@@ -597,6 +598,8 @@ BROKEN = (
     ("t E\n\n   1.0e+03 *\n\n" + rows("{t} {e}"), r"factor, 1.0e\+03"),  # MATLAB
     ("t,E\n" + rows("{t},{e}", 0, 70) + rows("3.0,{e}", 0, 8), "its last 8 rows .* thousands"),
     ("t,E\n" + rows("-0.1,inf\n{t},{e}"), "at -0.1 .* --from"),
+    ("t E\n-0.5 (345)\n" + rows("{t} {e}"), r"^\(345\) may be negative"),
+    ("t E\n" + rows("{t} {e}") + "45.0 (345)\n", r"\(345\) may be .* uncertainty"),
     (rows("t = {t}, E = {e} J\nE = {e} eV"), "E is in J, but in eV in line 2;"),
     ("t,E\n" + rows("{t},{e} mJ", 0, 70) + rows("{t},{e} J"), "E is in mJ, but in J in line 72"),
 )
