@@ -136,10 +136,11 @@ class _Grammar:
 
     def no_comparison(self, text: str) -> InputError:
         word, (right, *_) = next(iter(self.words.items()))
-        example = f"any.{LARGEST.name} > 1e-2 or any.{word} != {right}"
+        example = f"'any.{LARGEST.name} > 1e-2 or any.{word} != {right}'"
+        example += ": each field needs any. or a method before it"
         if self.fields:
-            example = f"{self.fields[0]} > 1e-2 or {word} != {right}"
-        return InputError(f"{_quoted(text)} is not understood; use, for example, '{example}'.")
+            example = f"'{self.fields[0]} > 1e-2 or {word} != {right}'"
+        return InputError(f"{_quoted(text)} is not understood; use, for example, {example}.")
 
 
 def _word(sign: ast.cmpop, node: ast.expr, field: str, words: Sequence[str]) -> str:

@@ -52,6 +52,7 @@ MISTAKES = {
         "--time 2 --h 0.05,5": "--time 2 … 5 s",
         "--time 1e9": "out of range … below 1e+09",
         "--time 1 --fail-if rk5.theta>1": "--fail-if … rk5",
+        "--time 1 --fail-if energy>1": "is not understood … needs any. or a method",
         "": "--time is missing",
         "--h 0": "h = 0 s",
         "--h small": "--h: 'small' is not a time; use, for example, 0.05",
