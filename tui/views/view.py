@@ -3,7 +3,7 @@
 import asyncio
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from textwrap import wrap
+from textwrap import TextWrapper
 from typing import Any, ClassVar, Generic, TypeVar
 
 from textual import events
@@ -165,10 +165,11 @@ class Pane(CellWidget):
 
     def words(self, *texts: str, rows: int = 100) -> list[Row]:
         """Return texts on rows, the last of which ends with an ellipsis if there are more."""
-        width = max(self.room.width, 1)
-        lines = [line for text in texts for line in wrap(text, width)]
+        wrapper = TextWrapper(max(self.room.width, 1), break_on_hyphens=False, placeholder=" …")
+        lines = [line for text in texts for line in wrapper.wrap(text)]
         if rows < len(lines):
-            lines[rows - 1] = f"{lines[rows - 1][: width - 2]} …"
+            wrapper.max_lines = 1
+            lines[rows - 1 :] = wrapper.wrap(" ".join(lines[rows - 1 :]))
         return [[(line, TEXT)] for line in lines[:rows]]
 
     def on_hide(self) -> None:

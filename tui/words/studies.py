@@ -33,8 +33,8 @@ def point_words(point: Point, kind: ErrorKind) -> str:
     if flaw := point.flaws[kind]:
         error += f" ({REASONS[flaw]})"
     swing = f"z {point.z:.3g}, {few(point.steps_per_swing)} steps per small-amplitude period"
-    text = f"{point.method.label} at h {point.h:.4g} s ({swing}): {error}"
-    return f"{text} for {point.force_evaluations} force evaluations."
+    cost = f"{point.force_evaluations} force evaluations"
+    return f"{point.method.label} at h {point.h:.4g} s: {error} for {cost} ({swing})."
 
 
 def front_words(found: Sequence[Cheapest], cost: Cost) -> str:

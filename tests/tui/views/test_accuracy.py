@@ -125,9 +125,8 @@ async def test_the_pointer_reads_a_point_out_and_a_click_uses_its_h():
         at = (column + 1, row + 1)  # the frame
         await pilot.press("right")  # the pointer goes before the cursor
         await pilot.hover(pane, (at[0] + 3, at[1]))
-        assert words(pane).startswith(
-            f"RK4 at h {point.h:.4g} s (z 0.0851, 73.8 steps per small-amplitude period"
-        )
+        assert words(pane).startswith(f"RK4 at h {point.h:.4g} s: energy error")
+        assert "(z 0.0851, 73.8 steps per small-amplitude period)" in words(pane)
         exact = replace(pane.points["rk4", RUNGS[1]], errors=dict.fromkeys(ERROR_LABELS, 0.0))
         pane.add(exact)
         pane._chart.forget()
@@ -162,7 +161,9 @@ async def test_all_methods_are_charted_and_one_beside_the_cast_gives_its_h():
         assert [len(chart.rows) for chart in charts] == [8, 9, 9, 24]
         pane.room = Size(60, 11)
         pane.draw()
-        assert (pane.text.count("\n"), pane.text[-1]) == (10, "…")  # two rows of words
+        *_, last = pane.text.splitlines()
+        assert (pane.text.count("\n"), last[-1]) == (10, "…")  # two rows of words
+        assert f" {last[:-1]}" in f" {' '.join(pane._sentences())}"  # which ends with a whole word
         await pilot.press(*["tab"] * 3, "left")
         assert pane.cast[pane.index] not in USUAL_CAST
         await pilot.press("enter", "asterisk")

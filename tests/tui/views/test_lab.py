@@ -63,7 +63,7 @@ def test_a_text_that_is_longer_than_its_rows_ends_with_an_ellipsis():
     pane = Pane()
     pane.room = Size(10, 2)
     texts = "one two", "three four five"
-    assert pane.words(*texts, rows=2) == [[("one two", TEXT)], [("three fo …", TEXT)]]
+    assert pane.words(*texts, rows=2) == [[("one two", TEXT)], [("three …", TEXT)]]
     assert pane.words(*texts, rows=3)[-1] == [("five", TEXT)]
 
 

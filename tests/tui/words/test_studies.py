@@ -74,12 +74,11 @@ def test_a_point_in_a_sentence():
     errors, flaws = {"theta": 2e-3}, {"theta": "rounding"}
     point = SimpleNamespace(method=RK4, h=0.05, z=0.15, steps_per_swing=41.9, errors=errors)
     point.flaws, point.force_evaluations = flaws, 80
-    start = "RK4 at h 0.05 s (z 0.15, 41.9 steps per small-amplitude period): theta error 2.0e-03 ("
-    assert point_words(point, "theta") == (
-        f"{start}{REASONS['rounding']}) for 80 force evaluations."
-    )
+    start = "RK4 at h 0.05 s: theta error 2.0e-03"
+    end = "for 80 force evaluations (z 0.15, 41.9 steps per small-amplitude period)."
+    assert point_words(point, "theta") == f"{start} ({REASONS['rounding']}) {end}"
     flaws["theta"] = None
-    assert point_words(point, "theta") == f"{start[:-2]} for 80 force evaluations."
+    assert point_words(point, "theta") == f"{start} {end}"
 
 
 @pytest.mark.parametrize("call", TEXTS, ids=lambda call: TEXTS[call])
