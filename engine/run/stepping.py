@@ -38,6 +38,11 @@ class Stepping(NamedTuple):
         return tuple(self.h / part for part in self.parts)
 
     @property
+    def symbol(self) -> str:
+        """The symbol of `h`; at equal cost, it is the largest of the methods."""
+        return "max " * self.equal_cost + "h"
+
+    @property
     def smallest(self) -> float:
         """The smallest own |step size| [s]: a scene's `h` at equal cost."""
         return min(map(abs, self.own))

@@ -101,11 +101,10 @@ def _time(source: Source, shown: Shown, stands_still: bool) -> Iterator[Segment]
 def _stepping(source: Source, shown: Shown) -> Iterator[Segment]:
     stepping = source.stepping
     fastest = source.scene.equations.fastest
-    h = f"h {stepping.h:.4g} s"
+    yield Segment(11, f"{stepping.symbol} {stepping.h:.4g} s")
+    yield Segment(10, f"{'max ' * stepping.equal_cost}z {abs(stepping.h) * fastest:.3g}")
     if stepping.equal_cost:
-        h += " equal cost"
-    yield Segment(11, h)
-    yield Segment(10, f"z {abs(stepping.h) * fastest:.3g}")
+        yield Segment(8, "equal cost")
     cast = source.scene.cast
     zs = {cast[place]: abs(stepping.own[place]) * fastest for place in shown.places(cast)}
     if warning := limit_warning(zs):

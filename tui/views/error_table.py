@@ -66,7 +66,9 @@ def _verdict(line: TableLine, width: int) -> str:
 
 
 VERDICT = Column(9, Head("verdict", 10, "verdict", 13), _verdict)
-STEP_SIZE = Column(6, Head("h", 6, "h [s]", 8), lambda line, width: f"{line.h:.4g}"[:width])
+STEP_SIZE = Column(
+    6, Head("h", 6, "h [s]", 8), lambda line, w: fitting(line.h, w, ".4g", ".2g", ".0e")
+)
 COLUMNS = (
     VERDICT,
     Column(8, ENERGY_ERROR.head, lambda line, w: fitting(line.reading.energy_error, w, *SIGNED)),
@@ -111,7 +113,7 @@ def _since_change(source: Source, sample: Sample) -> tuple[list[float], list[flo
     """Return the largest energy and theta errors since h changed, and a head."""
     change = change_before(source.changes, sample.step)
     if change.step and (errors := source.history.since(change)):
-        return *errors, f"since h = {change.stepping.h:.4g} s"
+        return *errors, f"since {change.stepping.symbol} = {change.stepping.h:.4g} s"
     readings = sample.readings  # a replay may not have read the change yet
     return [reading.max_energy_error for reading in readings], [0.0] * len(readings), "method"
 
@@ -123,11 +125,11 @@ def table(
     cast = source.scene.cast
     model = source.scene.equations
     names = [f" {mark(place, method)} {method.label}" for place, method in enumerate(cast)]
-    room = max([20, *map(len, names)])
+    lines, head = _lines(source, sample, shown)
+    room = max(20, len(head) + 1, *map(len, names))
     columns = _columns(source, width, room, more)
     spare = width - 1 - room - sum(width + 1 for _, width, _ in columns)
     gap = " " * (1 + min(spare // max(len(columns), 1), 3))
-    lines, head = _lines(source, sample, shown)
     row = [(f" {head}".ljust(room), QUIET)]
     for title, size, column in columns:
         title = title.replace(ENERGY_ERROR.head.narrow, model.error.head.narrow)

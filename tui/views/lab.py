@@ -130,7 +130,7 @@ class TimeChart(Pane):
         ghost = None
         if source.ghost is not None:
             ghost = source.ghost.window(until, back)
-        changes = [(change.x, f"h {change.stepping.h:.4g}") for change in source.changes[1:]]
+        changes = [(x, f"{each.symbol} {each.h:.4g}") for _, _, each, x in source.changes[1:]]
         names = [short_name(method) for method in self.cast]
         return time_chart(
             window, self.cast, look, *self.room, names=names, ghost=ghost, changes=changes

@@ -154,6 +154,7 @@ def numbered(lines: Sequence[EventLine]) -> list[str]:
 
 def _inputs(source: Source) -> Iterator[EventLine]:
     marks = 0
+    h = 0.0
     for event in source.events:
         place = (event.run, event.step, event.t)
         if event.kind == "mark":
@@ -162,17 +163,21 @@ def _inputs(source: Source) -> Iterator[EventLine]:
             yield EventLine(*place, text, "mark")
         elif event.scene is not None:
             scene = event.scene
+            h = scene.h
             name = scene.name
             if name == "custom":
                 name = start(scene.theta, scene.omega)
-            yield EventLine(*place, f"start {name}, h {scene.h:.4g} s", "change")
+            yield EventLine(*place, f"start {name}, h {h:.4g} s", "change")
         elif event.h is not None:
-            parts = [f"h {abs(event.h):.4g} s"]
-            if event.h < 0:
-                parts.insert(0, "time runs backwards")
+            text = f"h {abs(event.h):.4g} s"
             if event.equal_cost:
-                parts.append("equal cost")
-            yield EventLine(*place, ", ".join(parts), "change")
+                text = f"max {text}, equal cost"
+            if event.h < 0:
+                text = f"time runs backwards, {text}"
+            elif h < 0:
+                text = f"time runs forwards, {text}"
+            h = event.h
+            yield EventLine(*place, text, "change")
 
 
 def _milestone(milestone: Milestone, conserved: bool) -> str:

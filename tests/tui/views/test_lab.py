@@ -5,17 +5,18 @@ from unittest.mock import Mock
 import pytest
 from textual.geometry import Size
 
+from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES
 from pendu_tui.tui.drawing.picture import TEXT
 from pendu_tui.tui.playback.shown import Shown
 from pendu_tui.tui.screens.lab import LabScreen
-from pendu_tui.tui.views.error_table import COLUMNS, ErrorTable, extra_column
+from pendu_tui.tui.views.error_table import COLUMNS, STEP_SIZE, ErrorTable, extra_column, table
 from pendu_tui.tui.views.lab import EventList, TimeChart
 from pendu_tui.tui.views.phase import PhasePane, SectionPane
 from pendu_tui.tui.views.stage import Stage
 from pendu_tui.tui.views.view import Pane
 from pendu_tui.tui.words.cards import head_text
-from tests.tui.harness import lab
+from tests.tui.harness import after, lab
 
 
 async def test_a_click_on_an_event_goes_there_and_beside_them_opens_all():
@@ -65,6 +66,17 @@ def test_a_text_that_is_longer_than_its_rows_ends_with_an_ellipsis():
     texts = "one two", "three four five"
     assert pane.words(*texts, rows=2) == [[("one two", TEXT)], [("three …", TEXT)]]
     assert pane.words(*texts, rows=3)[-1] == [("five", TEXT)]
+    assert pane.words("one two-three", rows=1) == [[("one …", TEXT)]]
+
+
+def test_a_step_size_that_does_not_fit_is_rounded():
+    cells = [STEP_SIZE.cell(Mock(h=h), 6) for h in (0.0125, 0.06667, -0.0026)]
+    assert cells == ["0.0125", " 0.067", "-3e-03"]
+    live = after(DEFAULT_SCENE, 1)
+    live.change(Stepping(0.001234, equal_cost=True))
+    live.step(1)
+    rows = table(live, live.sample, Shown(), 80)
+    assert len({sum(len(text) for text, _ in row) for row in rows}) == 1  # heads are above them
 
 
 async def test_a_head_under_the_pointer_says_what_it_means():

@@ -161,3 +161,11 @@ def test_changes_and_marks_are_listed_pauses_are_not_and_a_step_back_removes_wha
     live = after(DRIFT.altered(theta=1.001), 8)
     live.step(-20)
     assert numbered(event_lines(live)) == [" 0.00 s start 57.35° 0 rad/s, h 0.05 s"]
+    ways = []
+    for h in (-0.05, 0.05, 0.1, -0.1):
+        live.change(Stepping(h))
+        ways += re.findall("backwards|forwards|$", str(event_lines(live)[-1]))[:1]
+    live.start(DRIFT)
+    live.change(Stepping(0.2))
+    assert ways == ["backwards", "forwards", "", "backwards"]
+    assert "forwards" not in str(event_lines(live)[-1])
