@@ -97,8 +97,7 @@ class LabScreen(SizedScreen[None]):
         super().__init__()
         self.source = source
         self.sources = [source]
-        shown = Shown().through(source.scene)
-        self.set_reactive(LabScreen.shown, shown)
+        self.set_reactive(LabScreen.shown, Shown().through(source.scene))
         self.clock = clock
         self.view = source.scene.shot.view
         self._view_in_front = create(self.view)
@@ -388,7 +387,10 @@ class LabScreen(SizedScreen[None]):
     ) -> None:
         before, view, self._undo = self._before_lesson
         self.is_guided = False
-        self.shown = before.shown
+        own = self.shown  # of the run, which stays
+        self.shown = before.shown._replace(line=own.line)
+        if before.run.history.scene.cast != self.source.scene.cast:
+            self.shown = self.shown._replace(hidden=own.hidden)
         self.source.set_speed(abs(before.run.speed))
         self.source.pause(False)
         self.call_next(self.action_view, view)
@@ -459,10 +461,8 @@ class LabScreen(SizedScreen[None]):
         cast = self.source.scene.cast
         self.change_shown(self.shown.alone(place, cast))
         if self.shown.places(cast) == [place]:
-            label = cast[place].label
-            self.notify(
-                f"Only {label} is shown. Click it again, or press u, to see all.", timeout=4
-            )
+            text = f"Only {cast[place].label} is shown. Click it again, or press u, to see all."
+            self.notify(text, timeout=4)
 
     def action_quantity(self) -> None:
         quantity = self.shown.quantity_ahead(1, self.source.scene)

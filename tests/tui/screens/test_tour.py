@@ -85,6 +85,19 @@ async def test_leaving_it_restores_view_and_settings_and_u_the_run():
         assert words(STEPS[1].watch) in panel(theatre)
 
 
+@pytest.mark.parametrize(("scene", "key"), [("euler-caught", "1"), ("resonance", "o")])
+async def test_after_it_its_run_has_neither_the_line_nor_the_hidden_methods_of_another(scene, key):
+    async with lab(SCENES[scene]) as theatre:
+        await theatre.press(key)
+        before = theatre.stage.shown
+        await theatre.press("T", "escape")
+        has_same_cast = theatre.scene.cast == SCENES[scene].cast
+        hidden = before.hidden if has_same_cast else frozenset()
+        assert theatre.stage.shown == before._replace(line=None, hidden=hidden)
+        await theatre.press("u")
+        assert theatre.stage.shown == before
+
+
 def guided(lesson: Lesson, scene: Scene, size: tuple[int, int] = (120, 40)):
     """A lab as a command with a lesson begins it."""
 
