@@ -428,9 +428,7 @@ def _series(
     later = np.diff(t) > 0
     if not later.all():
         place = np.argmin(later) + 1
-        raise InputError(
-            f"times must increase, and times[{place}] is not later than the one before."
-        )
+        raise InputError(f"times[{place}] is not later than the one before; times must increase.")
     span = t[-1] - t[0]
     if len(t) > 1 and not 1e-100 < span < 1e100:  # else squares are beyond doubles
         raise InputError(f"times span {span:.3g}; give them in a unit closer to that.")
@@ -448,5 +446,5 @@ def _size(energies: Any, scale: float | str) -> float:
         check_name("scale", scale, ("first", "std"))
         size = abs(float(energies[0]))
     if size <= 0:
-        raise InputError(f"scale = {scale!r} is {size:g}; errors need a number above zero.")
+        raise InputError(f"scale = {scale!r} is {size:g}; give a typical energy above zero.")
     return size

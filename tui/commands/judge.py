@@ -15,14 +15,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from pendu_tui.engine import library
-from pendu_tui.engine.inputs import did_you_mean
+from pendu_tui.engine.inputs import InputError, did_you_mean
 from pendu_tui.engine.quantities import ENERGY_ERROR, LARGEST
 from pendu_tui.engine.run.record import Fluctuation, Order, fluctuation, order_of
 from pendu_tui.engine.run.verdicts import FAILED, LEAVES
 from pendu_tui.recordings.files import printable
 from pendu_tui.tui.cli import units
 from pendu_tui.tui.cli.checks import JUDGED, Check, conclude, parse
-from pendu_tui.tui.cli.errors import Exit, UserError, unreadable
+from pendu_tui.tui.cli.errors import Exit, UserError, explained, unreadable
 from pendu_tui.tui.cli.layouts import role
 from pendu_tui.tui.cli.reader import read_sheets
 from pendu_tui.tui.cli.tables import Series, Wanted, find
@@ -110,8 +110,8 @@ def judge(name: str, options: argparse.Namespace) -> Answer:
         fields |= _fields(series, judged)
         if options.atoms is not None:
             fields |= _per_atom(fields, options.atoms, options.temperature)
-    except UserError as error:
-        raise UserError(f"{_shown(name)}: {error}", error.code) from None
+    except InputError as error:
+        raise UserError(f"{_shown(name)}: {error}", explained(error).code) from None
     fields["is_guess"] = options.time is None or options.energy is None
     return Answer(finite(fields), series, judged)
 
@@ -175,7 +175,7 @@ def _seen(number: int, series: Series) -> dict[str, Any]:
 
 
 def _judged(series: Series, scale: float | str | None) -> library.Judged:
-    """Return what the library says of a table.  Raises UserError if the scale is 0."""
+    """Return what the library says of a table.  Raises InputError, as where the scale is 0."""
     if series.choice.kinetic:
         scale = abs(float(series.kinetic.mean()))
     elif scale is None:
@@ -185,11 +185,7 @@ def _judged(series: Series, scale: float | str | None) -> library.Judged:
     if series.diverged_at is not None:
         times = np.append(times, series.diverged_at)
         energies = np.append(energies, np.nan)
-    try:
-        return library.judge(times, energies, scale)
-    except ValueError as error:
-        why = f"{str(error).removesuffix('.')}; give a typical energy with --scale."
-        raise UserError(why) from None
+    return library.judge(times, energies, scale)
 
 
 def _fields(series: Series, judged: library.Judged) -> dict[str, Any]:

@@ -132,7 +132,7 @@ WIDE = f"t,{50 * 'E'}{20 * ',n'}\n1{21 * ',1'}\n"
         ("1 2\n", "1 3", 2, "there is no column '3'; choose from 1, 2."),
         (TABLE, "t E --table 2", 2, "no table 2; the input has 1"),
         (TABLE, "t E --atoms 10", 2, "--step 0.5fs"),
-        ("t,E\n0,0\n1,1\n", "t E", 2, "zero; give a typical energy with --scale"),
+        ("t,E\n0,0\n1,1\n", "t E", 2, "scale = 'first' is 0; give a typical energy"),
         (UNITS, "t E --scale kinetic:K", 2, "of K and the energy differ (kJ/mol, kcal/mol)"),
         (UNITS.replace(" [kJ/mol]", ""), UNIT_GIVEN, 2, "(kJ/mol, kcal/mol)"),
     ],
