@@ -118,6 +118,8 @@ RK4 = Method(
     models=tuple(MODELS),
 )
 
+_GAINS = "It gains energy: a step multiplies that of small swings by 1 + z⁴/4."
+
 HEUN = Method(
     key="heun",
     label="Heun",
@@ -132,7 +134,7 @@ HEUN = Method(
     reference=f"{HAIRER}, II.1.1",
     used="equations with multiplicative noise: Brian 2, heun [brian2.readthedocs.io, Numerical "
     "integration]",
-    note="It gains energy: a step multiplies that of small swings by 1 + z⁴/4.",
+    note=_GAINS,
 )
 
 EXPLICIT_MIDPOINT = Method(
@@ -147,7 +149,7 @@ EXPLICIT_MIDPOINT = Method(
     other_names=("modified Euler",),
     reference=f"{HAIRER}, II.1.1",
     used="neurons: Brian 2, rk2 [brian2.readthedocs.io, Numerical integration]",
-    note="It gains energy: a step multiplies that of small swings by 1 + z⁴/4.",
+    note=_GAINS,
 )
 
 FAMILY = (RK4, HEUN, EXPLICIT_MIDPOINT)

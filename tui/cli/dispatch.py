@@ -163,9 +163,7 @@ def refuse_to_replace_inputs(options: Namespace) -> None:
         inputs += [text, text.rpartition(":")[0]]  # FILE.py:FUNCTION
     for output in filter(None, (options.output, options.record)):
         if any(_is_same(output, each) for each in filter(None, inputs)):
-            raise UserError(
-                f"{output} is an input of this command; choose another name for the output."
-            )
+            raise UserError(f"{output} is an input of this command; choose another output.")
 
 
 def _is_same(path: Path, other: str) -> bool:

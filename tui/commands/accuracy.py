@@ -62,10 +62,7 @@ def run(options: argparse.Namespace) -> int:
     check_output(options)
     scene = general_scene_of(options)
     if scene.theta == scene.omega == 0:
-        raise UserError(
-            "the pendulum hangs at rest, so there is no error to measure; use another --theta or "
-            "--omega."
-        )
+        raise UserError("at rest there is no error to measure; use another --theta or --omega.")
     searched = scene if options.methods else with_all_methods(scene)
     seconds, rungs = _rungs(scene, options)
     results = Results(searched if options.all else scene, seconds, options)

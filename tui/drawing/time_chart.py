@@ -22,7 +22,7 @@ from pendu_tui.tui.drawing.frame import (
 )
 from pendu_tui.tui.drawing.picture import EXACT, FRAME, QUIET, TEXT, Picture, faint, inks
 from pendu_tui.tui.playback.rows import Window
-from pendu_tui.tui.playback.shown import Quantity, Shown
+from pendu_tui.tui.playback.shown import Shown
 
 MIN_COLUMNS = 20  # smaller charts have so many, too
 MIN_ROWS = 4
@@ -164,7 +164,7 @@ class _Run(NamedTuple):
     high: Floats
 
     @classmethod
-    def of(cls, window: Window, quantity: Quantity, places: Sequence[int]) -> "_Run":
+    def of(cls, window: Window, quantity: str, places: Sequence[int]) -> "_Run":
         return cls(window, window.low[quantity][:, places], window.high[quantity][:, places])
 
     def columns(self, edges: Floats, shown: Shown) -> tuple[Floats, Floats]:

@@ -14,7 +14,6 @@ from pendu_tui.engine.quantities import ENERGY, ENERGY_ERROR, HIGH, LOW, THETA_E
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import Stepping, SteppingChange, change_before
 from pendu_tui.engine.scenes import Scene
-from pendu_tui.tui.playback.shown import Quantity
 
 if TYPE_CHECKING:
     from pendu_tui.tui.playback.rows import Floats, Ghost, Records, Rows, Window
@@ -162,7 +161,7 @@ class History:
         high = self._named(records["high"])
         return Window(records["x"], records["t"], low, high, self._repeats)
 
-    def _named(self, extremes: "Floats") -> dict[Quantity, "Floats"]:
+    def _named(self, extremes: "Floats") -> dict[str, "Floats"]:
         named = {name: extremes[:, i] for i, name in enumerate(self._quantities)}
         if self._model.conserves_energy:  # then the energy's extremes are known, too
             start, scale, *_ = self._reference

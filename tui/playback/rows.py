@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendu_tui.engine.scenes import Scene
-from pendu_tui.tui.playback.shown import Quantity
 
 Floats = NDArray[np.float64]
 Records = NDArray[np.void]
@@ -24,8 +23,8 @@ class Window:
 
     x: Floats  # s, (n,): simulated time covered, which grows even while t goes back
     t: Floats  # s, (n,): simulated time
-    low: dict[Quantity, Floats]  # (n, methods): extremes since the previous row; nan if unknown
-    high: dict[Quantity, Floats]
+    low: dict[str, Floats]  # (n, methods): extremes since the previous row; nan if unknown
+    high: dict[str, Floats]
     repeats: float  # s, the period of the errors: half a swing, a whole turn, or 0
 
     @property

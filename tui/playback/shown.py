@@ -7,18 +7,14 @@ from pendu_tui.engine.methods import Cast
 from pendu_tui.engine.quantities import ENERGY_ERROR, SHADOW_ERROR
 from pendu_tui.engine.scenes import SCENES, Line, Scene, Shot
 
-Quantity = str
-"""The name of one that the model's charts can show."""
-
 WINDOWS: tuple[float | None, ...] = (None, 20.0, 60.0, 300.0, 1800.0, 5.0)
 """The lengths of the chart [s]; None is the whole run."""
-
 
 FAST = 4.0
 """Scenes that run at this multiple of real time or faster are charted over logarithmic time."""
 
 
-def quantities(scene: Scene) -> tuple[Quantity, ...]:
+def quantities(scene: Scene) -> tuple[str, ...]:
     model = scene.equations
     has_shadow = not model.without_force and any(m.modified_energy for m in scene.cast)
     known = (each.name for each in model.charted())
@@ -39,7 +35,7 @@ class Stretch(NamedTuple):
 class Shown(NamedTuple):
     hidden: frozenset[str] = frozenset()  # keys of methods
     exact: bool = False  # the exact motion, dotted
-    quantity: Quantity = ENERGY_ERROR.name  # of the chart
+    quantity: str = ENERGY_ERROR.name  # of the chart
     log: bool = True
     log_time: bool = False  # on a logarithmic chart of the whole run
     seconds: float | None = None  # the length of the chart
@@ -91,7 +87,7 @@ class Shown(NamedTuple):
         others = frozenset(method.key for method in cast) - {cast[place].key}
         return self._replace(hidden=frozenset() if self.hidden == others else others)
 
-    def quantity_ahead(self, ahead: int, scene: Scene) -> Quantity:
+    def quantity_ahead(self, ahead: int, scene: Scene) -> str:
         known = quantities(scene)
         index = known.index(self.quantity) if self.quantity in known else 0
         return known[(index + ahead) % len(known)]

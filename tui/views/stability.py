@@ -259,13 +259,13 @@ class StabilityPane(Chooser[tuple[int, int]]):
         return int(abs(self.grid.z - z).argmin()), int(abs(self.grid.theta - theta).argmin())
 
     def picture(self, source: Source, sample: Sample) -> Picture:
+        title = "Stability (F5)"
         if why := source.scene.why_not_mapped:
-            self.write_titles("Stability (F5)")
+            self.write_titles(title)
             return Picture(self.words(why))
         if self.cast != self.grid.methods:
             self._begin(self.cast)
             self.compute(pieces, self.grid, PASSES)
-        title = "Stability (F5)"
         words = ""
         if latest := self._latest:
             steps = latest.part.grid.steps
