@@ -22,7 +22,8 @@ CLAIMS = (
 )
 MEASURED = ("order", "linear_limit", "symplectic", "reversible", "force_evaluations")
 NOTE = """
-order: measured from the theta error over half a period; claimed: what the author states.
+claimed: what the author states; the rest is measured, unless no order is (-).
+order: from the theta error over half a period.
 evals: force evaluations per step, on average if they vary.
 z limit: for the linear oscillator, z = h·w0 (0: never stable); pendu-tui stability finds those of
 the pendulum."""
