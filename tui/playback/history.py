@@ -10,7 +10,7 @@ from copy import copy, deepcopy
 from operator import attrgetter
 from typing import TYPE_CHECKING, NamedTuple
 
-from pendu_tui.engine.quantities import ENERGY, ENERGY_ERROR, HIGH, LOW, THETA_ERROR
+from pendu_tui.engine.quantities import ENERGY, ENERGY_ERROR, HIGH, LOW
 from pendu_tui.engine.run.lockstep import Sample
 from pendu_tui.engine.run.stepping import Stepping, SteppingChange, change_before
 from pendu_tui.engine.scenes import Scene
@@ -28,6 +28,7 @@ class Row(NamedTuple):
     """A sample as charts and trails need it."""
 
     step: int
+    since: int  # step of the last change of h
     x: float  # s, simulated time covered
     t: float  # s, simulated
     states: Sequence[Sequence[float]]  # of the methods and the exact motion: theta, omega
@@ -37,6 +38,7 @@ class Row(NamedTuple):
 
 class History:
     sample: Sample
+    gap = -1  # after this step samples are missing
 
     def __init__(
         self, scene: Scene, changes: Sequence[SteppingChange], capacity: int = 4096
@@ -103,8 +105,9 @@ class History:
         if with_extremes:
             low = [LOWEST(reading) for reading in readings]
             high = [HIGHEST(reading) for reading in readings]
-        x = change_before(self.changes, sample.step).x_at(sample.t)
-        return Row(sample.step, x, sample.t, [*states, exact], [low, *others], [high, *others])
+        change = change_before(self.changes, sample.step)
+        place = sample.step, change.step, change.x_at(sample.t), sample.t
+        return Row(*place, [*states, exact], [low, *others], [high, *others])
 
     def _shadow_errors(self, sample: Sample) -> list[float]:
         """Return the relative change of each modified energy since the step size changed.
@@ -174,17 +177,18 @@ class History:
     def since(self, change: SteppingChange) -> tuple[list[float], list[float]] | None:
         """Return the largest energy errors since a change, and the theta errors at it.
 
-        Returns None where no sample up to the change has been read.
+        Returns None where not all samples from the change on have been read.
         """
-        window = self.window()
-        count = int((window.x <= change.x).sum())
-        if not count:
+        rows = self.rows
+        if change.step <= self.gap or change.step not in rows["step"]:
             return None
-        low = -window.low[ENERGY_ERROR.name][count:]
-        high = window.high[ENERGY_ERROR.name][count:]
+        later = rows["step"] > change.step
+        low = -self._named(rows["low"][later])[ENERGY_ERROR.name]
+        high = self._named(rows["high"][later])[ENERGY_ERROR.name]
         errors = [abs(ERROR(reading)) for reading in self.sample.readings]
         largest = [max(each) for each in zip(errors, *low.tolist(), *high.tolist(), strict=True)]
-        return largest, window.high[THETA_ERROR.name][count - 1].tolist()
+        *states, exact = rows["states"][rows["step"] == change.step][0].tolist()
+        return largest, [self._model.theta_error(theta, exact[0]) for theta, _ in states]
 
     def trails(self, length: int = TRAIL) -> "Floats":
         """Return theta [rad] and omega [rad/s] at the last samples, oldest first.

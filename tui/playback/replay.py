@@ -204,10 +204,10 @@ class Replay(Source):
         stretch = max(1.0, (last_minute - second) / MAX_STRETCHES)
         while second < self.recording.sample(self._place).clock:
             yield from self._read(history, second, second + 1.0, self.sample.step)
-            if second < last_minute:
-                second = min(second + stretch, last_minute)
-            else:
-                second += 1.0
+            second += 1.0
+            if stretch > 1.0 and second < last_minute:
+                history.gap = history.step
+                second = min(second + stretch - 1.0, last_minute)
         history.add(self.sample)
         self.history = history
 

@@ -69,7 +69,7 @@ class Rows:
     def __init__(self, quantities: int, methods: int, capacity: int) -> None:
         extremes = (float, (quantities, methods))
         states = (float, (methods + 1, 2))
-        row = [("step", int), ("x", float), ("t", float)]
+        row = [("step", int), ("since", int), ("x", float), ("t", float)]
         record = np.dtype([*row, ("states", *states), ("low", *extremes), ("high", *extremes)])
         self._recent = np.zeros(capacity, record)
         self._count = 0  # of recent rows
@@ -131,11 +131,14 @@ def _up_to(step: int, rows: Records) -> Records:
 
 
 def _halved(rows: Records) -> Records:
-    """Merge neighbours in pairs; an odd last row stays as it is."""
+    """Merge neighbours in pairs, but none across a change of h; an odd last row stays as it is."""
     pairs = len(rows) // 2 * 2
     first = rows[:pairs:2]
     last = rows[1:pairs:2]
     merged = last.copy()
     merged["low"] = np.fmin(first["low"], last["low"])
     merged["high"] = np.fmax(first["high"], last["high"])
+    alone = first["since"] != last["since"]
+    merged[alone] = last[alone]
+    merged = np.insert(merged, np.flatnonzero(alone), first[alone])
     return np.concatenate([merged, rows[pairs:]])

@@ -17,10 +17,12 @@ DRIFT = SCENES["drift"]
 EXPLICIT, SYMPLECTIC, VERLET, RK4 = range(4)
 
 
-def run(scene: Scene, *stretches: tuple[int, float], equal_cost: bool = False) -> History:
+def run(
+    scene: Scene, *stretches: tuple[int, float], equal_cost: bool = False, capacity: int = 4096
+) -> History:
     """The history of a run with a sample each step: stretches of so many steps with this h."""
     course = RewindableRun(scene, 1)
-    history = History(scene, course.changes)
+    history = History(scene, course.changes, capacity)
     history.add(course.sample())
     for steps, h in stretches:
         course.change(Stepping(h, equal_cost, scene.cast))
@@ -138,7 +140,7 @@ def test_the_largest_error_since_a_change_may_be_negative_and_lie_between_sample
     history.add(sample(6, -7))
     errors, _ = history.since(SteppingChange(6, 0.6, Stepping(0.1), 0.65))
     assert errors == [7] * 4
-    assert history.since(SteppingChange(0, 0.0, Stepping(0.1), -0.1)) is None
+    assert history.since(SteppingChange(-1, -0.1, Stepping(0.1), -0.1)) is None
 
 
 def test_what_came_since_a_change_begins_behind_the_sample_at_it():
@@ -146,6 +148,13 @@ def test_what_came_since_a_change_begins_behind_the_sample_at_it():
     history = run(DRIFT, (40, 0.05), (2, 0.2))
     _, thetas = history.since(history.changes[-1])
     assert thetas == until.window().high["theta_error"][-1].tolist()
+
+
+def test_rows_that_merge_change_nothing_of_what_came_since_a_change():
+    stretches = (40, 0.2), (400, 0.02)
+    whole = run(DRIFT, *stretches)
+    change = whole.changes[-1]
+    assert run(DRIFT, *stretches, capacity=64).since(change) == whole.since(change)
 
 
 def test_where_time_runs_backwards_rows_stay_in_the_order_in_which_they_were_run():

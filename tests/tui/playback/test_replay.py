@@ -9,7 +9,7 @@ import pytest
 
 from pendu_tui.engine.methods import method_of
 from pendu_tui.engine.run.lockstep import Sample
-from pendu_tui.engine.run.stepping import Stepping
+from pendu_tui.engine.run.stepping import Stepping, SteppingChange
 from pendu_tui.engine.run.verdicts import Milestone
 from pendu_tui.engine.scenes import DEFAULT_SCENE
 from pendu_tui.recordings.events import Event, simulate
@@ -180,6 +180,9 @@ def test_of_a_long_past_the_last_minute_is_read_whole_and_300_seconds_before(tmp
     replay.seek(1050.0)
     assert len(replay.history.trails()) == 3  # at once, a second
     assert replay.fill()
+    changes = [SteppingChange(step, step * 0.05, Stepping(0.1)) for step in (0, 19_800, 20_990)]
+    is_told = [replay.history.since(change) is not None for change in changes]
+    assert is_told == [False, True, True]  # what lies between is not known
     times = np.arange(0, 1050.5, 0.5)
     is_read = (times >= 990) | ((times + 1e-6) % 3.3 < 1 + 2e-6)
     assert replay.history.window().t == pytest.approx(times[is_read])
