@@ -97,6 +97,8 @@ class RewindableRun:
     def forward(self, n: int) -> None:
         target = self.step + n
         while self.step < target:
+            if self.step == self._reset:
+                self.lockstep.sample()  # to reset the extremes, which a copy may not have done
             stops = [target]
             for change in self.changes[self._applied :]:
                 if change.step == self.step:
@@ -107,8 +109,6 @@ class RewindableRun:
             if self.step < self._reset:
                 stops.append(self._reset)
             self.lockstep.advance(min(stops) - self.step)
-            if self.step == self._reset:
-                self.lockstep.sample()  # to reset the extremes again
             if self.step >= self._copies[-1].lockstep.step + COPY_EVERY:
                 self._copies.append(self._copy())
                 self._thin()
@@ -146,7 +146,7 @@ class RewindableRun:
             self._copies.pop()
         self.run = self.lockstep.run = run
         self.furthest = self.step
-        self._reset = min(self._reset, self.step)
+        self._reset = 0
 
     def _copy(self) -> _Checkpoint:
         return _Checkpoint(self.lockstep.copy(), self._applied)

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from pendu_tui.engine.inputs import InputError
-from pendu_tui.engine.run import loops
+from pendu_tui.engine.run import loops, rewindable
 from pendu_tui.engine.run.lockstep import Lockstep, Sample
 from pendu_tui.engine.run.stepping import Stepping
 from pendu_tui.engine.scenes import DEFAULT_SCENE, SCENES, Z_LIMITS
@@ -256,7 +256,8 @@ def test_a_change_undone_before_the_next_step_takes_no_verdict_away(tmp_path):
     assert verify(tmp_path / "lab.mcap").identical
 
 
-def test_going_back_to_behind_the_last_recorded_sample_spoils_no_later_one(tmp_path):
+def test_going_back_to_behind_the_last_recorded_sample_spoils_no_later_one(tmp_path, monkeypatch):
+    monkeypatch.setattr(rewindable, "COPY_EVERY", 1)  # also at steps that are recorded
     lab = Lab(speed=256.0, record=tmp_path / "lab.mcap")
     for _ in range(9):
         lab.run(0.1)
