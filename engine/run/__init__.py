@@ -11,5 +11,5 @@
   when.  `record` judges the energies of any program.
 """
 
-NUMERICS = 3
+NUMERICS = 4
 """The version of the numbers: a run recorded with another one may differ in the last digits."""
