@@ -98,7 +98,7 @@ LAYOUTS = (
         units=("ps", "kcal/mol"),
     ),
     Layout(
-        programs="CP2K's output",  # but its SCF
+        programs="CP2K's output",  # the head of its iterations begins no table
         line=rf"^ *MD\| +(?P<name>[A-Z].*?) {{2,}}{VALUE}|^ *(?P<again>Step +Update method)",
     ),
     Layout(

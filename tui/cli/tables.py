@@ -29,6 +29,7 @@ NOT_LATER = (
     "print numbers without thousands separators."
 )
 SAMPLE = 64  # rows, after which the columns are chosen and the others dropped
+NO_UNIT = ("", "1", "-")  # of relative errors
 CLEARLY = 2  # times smaller is the standard deviation of what is steadier
 OTHER_E = {"e": {"a", "i", "inc", "n"}, "E": {"N", "B", "I", "nu", "strain", "loss"}}
 """Columns beside which it is an eccentricity, or East, a field, a modulus, a loss."""
@@ -200,7 +201,7 @@ def _energy(
     if has_parts:
         is_whole = len({shown("energy", units[place]) for place in parts}) == 1 and not has_more
         return parts if is_whole and not _lacks(samples, parts, further) else None
-    return _only([place for place in best.get("error", ()) if not units[place].strip("-1")])
+    return _only([place for place in best.get("error", ()) if units[place] in NO_UNIT])
 
 
 def _is_other(names: Sequence[str], samples: Sequence[Any], place: int) -> bool:
@@ -411,7 +412,7 @@ class Sheet:
         """Return the sum of some columns at the lines of the leading one, masked where one is not.
 
         What is printed belongs to the time before it, or to that after it if all come before.
-        Raises UserError if several bodies print the same.
+        Raises UserError if several bodies, or steps of an iteration, print the same.
         """
         total = np.ma.zeros(len(lines))
         for place in group:
@@ -425,15 +426,20 @@ class Sheet:
             column = np.ma.array(np.zeros(len(lines)), mask=True)
             values = np.array(self._values[place])
             column[record[fits]] = values[fits]
-            counts = np.bincount(record[fits])[1:-1]
-            if 1 < counts.max(initial=1) == counts.min():  # or steps of an iteration
-                lags = (counts[0], 1)
-                same, other = (np.nansum(abs(values[lag:] - values[:-lag])) for lag in lags)
-                if CLEARLY * same < other:
-                    name = self.names[place]
-                    raise unreadable(f"{name} has several values at each time; keep one body.")
+            if _alternate(values[fits], record[fits]):
+                name = self.names[place]
+                raise unreadable(f"{name} has several values at each time; keep one of them.")
             total = total + column
         return total
+
+
+def _alternate(values: Any, records: Any) -> bool:
+    """Return whether values take turns: as many at each time, each most like its own before."""
+    counts = np.bincount(records)[1:-1]
+    if not 1 < counts.max(initial=1) == counts.min():
+        return False
+    own, other = (np.nansum(abs(values[lag:] - values[:-lag])) for lag in (counts[0], 1))
+    return bool(CLEARLY * own < other)
 
 
 def _blocks(marks: Any) -> Any:
@@ -472,7 +478,7 @@ class Series:
     def holds_errors(self) -> bool:
         """Whether the energies are relative errors already."""
         roles = [role(self.sheet.names[place])[0] for place in self.choice.energy]
-        return roles == ["error"] and not self.units[1].strip("-1")
+        return roles == ["error"] and self.units[1] in NO_UNIT
 
     def named(self, group: Sequence[int]) -> str:
         """Return the names of columns that are added up, "row" if there is none."""
