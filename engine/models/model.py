@@ -349,7 +349,7 @@ class Model(ABC):
         return ExactMotion(at, self.regime(theta, omega), accuracy=ACCURACY)
 
     def regime(self, theta: float, omega: float) -> Regime:
-        """Return rotation as long as the energy is enough."""
+        """Return the kind of motion that the energy at the start allows."""
         energy = self.energy()
         start = energy(self.start(theta, omega))
         if start == energy(self.rest_phase(0.0)):
