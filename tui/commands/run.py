@@ -268,7 +268,7 @@ def _rows_of_list(time: float, expected_steps: int, scene: Scene) -> list[Row]:
     for sample in simulate(scene, time, None, MAX_BATCH, lockstep=lockstep):
         last = sample
     numbers = {_column(name): value for name, value in scene.numbers.items()}
-    start = {"model": scene.model, **numbers, "time": time}
+    start = {"model": scene.model, **numbers, "time": last.t}
     return [start | row for row in rows_of(lockstep, last, is_whole=True)]
 
 

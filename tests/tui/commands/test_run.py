@@ -153,6 +153,13 @@ def test_an_interrupt_keeps_what_is_done(monkeypatch, command, rows, share, fiel
     assert (answer["interrupted"], len(answer[field])) == (True, count)
 
 
+def test_a_run_of_a_list_ends_after_whole_steps_as_one_alone_does():
+    runs = pendu("run", "--time", 1, "--h", "0.3,0.4", "--methods", "rk4", "--json").json["runs"]
+    for each in runs:
+        alone = pendu("run", "--time", 1, "--h", each["h"], "--methods", "rk4", "--json").json
+        assert each["time"] == alone["time"] == each["h"] * alone["steps"]
+
+
 def test_of_a_repeated_gate_each_counts_and_a_bounded_energy_has_a_drift():
     command = ("run", "--time", 20, "--methods", "verlet")
     passing = ("--fail-if", "any.drift_per_second > 1e-3")
