@@ -380,6 +380,10 @@ class Parser(argparse.ArgumentParser):
             sentence += f"; {self.prog} --help shows the options."
         raise UserError(sentence)
 
+    def _print_message(self, message: str, file: Any = None) -> None:
+        """Write the help; argparse would hide that the disk is full."""
+        file.write(message)
+
     def parse_args(  # type: ignore[override]
         self, arguments: Sequence[str], namespace: Any = None
     ) -> Any:

@@ -107,7 +107,7 @@ def test_an_interrupt_is_one_sentence_even_if_a_library_makes_another_error_of_i
 
 def process(command: str, **options: object) -> subprocess.CompletedProcess[str]:
     streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True} | options
-    return subprocess.run([*PENDU, command], check=False, **streams)
+    return subprocess.run([*PENDU, *command.split()], check=False, **streams)
 
 
 @pytest.mark.parametrize(("file", "code"), [(None, 141), ("a?.csv", 5)])
@@ -138,9 +138,10 @@ def test_a_closed_stdout_is_one_sentence_and_exit_5_and_a_closed_stderr_silence(
 @pytest.mark.skipif(sys.platform != "linux", reason="needs /dev/full")
 def test_a_full_disk_under_stdout_is_one_sentence_and_exit_5():
     with Path("/dev/full").open("w") as full:
-        done = process("scenes", stdout=full)
-    assert (done.returncode, done.stderr.count("\n")) == (5, 1)
-    assert "output: No space left on device; free some space" in done.stderr
+        for line in ("scenes", "run --help"):
+            done = process(line, stdout=full)
+            assert (done.returncode, done.stderr.count("\n")) == (5, 1)
+            assert "output: No space left on device; free some space" in done.stderr
 
 
 def test_an_ascii_terminal_gets_question_marks_not_a_traceback():
