@@ -59,7 +59,12 @@ def keep_older(path: Path | None) -> None:
 
 def interruptible() -> AbstractContextManager[None]:
     """Let SIGTERM and SIGHUP interrupt the block as Ctrl+C does, so that it cleans up."""
-    return _signals_to(signal.default_int_handler)
+    return _signals_to(_interrupt)
+
+
+def _interrupt(number: int, frame: FrameType | None) -> None:
+    # asyncio replaces signal.default_int_handler by one that waits for an await
+    raise KeyboardInterrupt
 
 
 @contextmanager

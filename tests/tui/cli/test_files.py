@@ -1,5 +1,6 @@
 """What a command writes is there whole or not at all, and nothing is overwritten but by force."""
 
+import asyncio
 import ctypes
 import errno
 import gc
@@ -41,11 +42,17 @@ def ask_to_end(number: int) -> None:
     time.sleep(1)
 
 
+async def busy(number: int) -> None:
+    ask_to_end(number)
+    raise AssertionError("the signal waits")
+
+
 @pytest.mark.parametrize(
     ("after", "error"),
     [
         (fail, OSError),
         *((partial(ask_to_end, each), KeyboardInterrupt) for each in ENDING),
+        (lambda: asyncio.run(busy(SIGINT)), KeyboardInterrupt),
     ],
 )
 def test_after_an_error_or_a_signal_the_older_file_is_unchanged(tmp_path, after, error):
