@@ -93,7 +93,6 @@ class Judge:
         self, h: float, period: float, method: Method, model: Model, start: LookPoint
     ) -> None:
         """`h` [s] is the method's step; `period` [s] the exact motion's, or 2 pi/w0 without one."""
-        self.judgement = Judgement()
         self.peak = 0.0  # the largest |error| of all steps so far
         self._h = abs(h)
         self._period = period
@@ -110,6 +109,7 @@ class Judge:
         self._orbit: _Orbit | None = None
         if method.symplectic and method.general and not model.without_force:
             self._orbit = _Orbit(method, model, h, period)
+        self.judgement = Judgement(progress=self.progress_at(0))
 
     def copy(self) -> Self:
         """Return another judge that continues from here."""

@@ -270,9 +270,9 @@ def test_at_equal_cost_what_lacks_at_a_step_is_what_lacked_when_its_judge_last_l
     lockstep = Lockstep(DRIFT, judged=True)
     lockstep.set_stepping(Stepping(0.04, True, DRIFT.cast))
     # a swing takes 53.6 steps, and there is a look point every 7 steps
-    swings = [lockstep.progress(2, steps).have for steps in (105, 108, 112)]
-    assert swings == [1, 1, 2]
-    assert lockstep.progress(2, 6) is None
+    swings = [lockstep.progress(2, steps).have for steps in (6, 105, 108, 112)]
+    assert swings == [0, 1, 1, 2]
+    assert lockstep.judgements[2].progress == lockstep.progress(2, 0)
     lockstep.advance(112)  # counted in each method's own steps
     assert [each.progress.have for each in lockstep.judgements] == [2] * 4
 
