@@ -621,19 +621,22 @@ class _Text:
 
         Without numbers they are those of any row.
         """
+        is_first = not self._table.names
+        wanted = [text for text in (self._wanted.time, self._wanted.energy) if text]
+        known = known_names(names)
+        if known < 2 and not (is_first or wanted):
+            return 0  # at once, or prose would be slow
         if any(re.fullmatch(r"[(\[][^()\[\]]*[)\]]", name) for name in names):  # a unit
             return 0
         choice = choose(names, [""] * len(names), [()] * len(names), self._wanted)
         if choice and numbers and None in [numbers[place] for place in choice.columns]:
             return 0
-        asked = [text for text in (self._wanted.time, self._wanted.energy) if choice and text]
+        asked = wanted if choice else []
         if not all(map(str.isdecimal, asked)):
             return len(names)
-        known = known_names(names)
         if known > 1:
             return known
         is_data = any(number(name) is not None for name in names)
-        is_first = not self._table.names
         return int(is_first and not is_data and (bool(asked) or None not in (numbers or ())))
 
     def _labelled(self, width: int) -> list[str]:
