@@ -143,7 +143,7 @@ The exit code is 1 if the verdict is `failed`.
   pendu-tui verify tests/recordings/ crossover.mcap
   pendu-tui verify golden
 
-A folder means all recordings below it; golden, the bundled ones.
+A folder means all .mcap files below it; golden, the bundled ones.
 Exit codes: 0 all are identical; 1 one differs or, unless a .part, is incomplete; 3 one
 is unreadable.
 """,
