@@ -20,18 +20,18 @@ DOCUMENTED = ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef
 MAX_FUNCTION_LINES = 40  # without the docstring
 
 CEILINGS = {
-    "characters": 839_000,
-    "characters_of_engine": 255_000,
-    "characters_of_recordings": 68_400,
-    "characters_of_tui": 515_500,
-    "characters_of_tests": 782_800,
+    "characters": 844_000,
+    "characters_of_engine": 256_000,
+    "characters_of_recordings": 68_500,
+    "characters_of_tui": 519_700,
+    "characters_of_tests": 794_600,
     "characters_of_bench": 60_000,
     "files": 127,
     "parallel_assignments": 8,
     "conditional_expressions_per_1000_lines": 10,
     "long_functions": 0,
     "long_lines": 0,
-    "numeric_constants": 217,
+    "numeric_constants": 220,
 }
 """Two per cent above the measures, so that what CONTRIBUTING invites passes.
 
