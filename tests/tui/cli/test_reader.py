@@ -58,6 +58,7 @@ def columns(series: Series) -> str | None:
         ("time{picosecond},Etot/N[electronvolt]", "{t},{e}", "time ps, Etot/N eV"),
         ("time [μs],E/(kJ·mol⁻¹)", "{t},{e}", "time us, E kJ/mol"),
         ("t,|dE/E|", "{t},{e}", "t, |dE/E|"),
+        ("t,dE/E [-]", "{t},{e}", "t, dE/E -"),
         ("T,energy", "{t},{e}", "T, energy"),  # it increases
         ("T,t,E", "300,{t},{e}", "t, E"),
         ("t,E,total,conserved", "{t},{k},{k},{e}", "t, conserved"),
