@@ -268,3 +268,8 @@ def test_any_force_on_arrays_is_integrated_with_the_order_of_the_method(key):
         errors.append(np.abs(np.subtract(end, TURN)).max())
         assert np.array_equal(phase, TURN)
     assert errors[1] < 2e-9 or math.log2(errors[0] / errors[1]) > method.order - 0.3
+
+
+def test_an_implicit_method_may_give_nan_where_the_elements_of_an_array_are_coupled():
+    phases = METHODS["backward_euler"].phases(gravity, tuple(map(np.array, TURN)), 0.1)
+    assert np.isnan([q for q, _ in islice(phases, 60)]).any()

@@ -109,7 +109,9 @@ def test_a_method_that_cannot_be_tried_is_refused_with_a_sentence(
 def test_a_trial_ends_in_silence_if_the_command_has_ended(monkeypatch):
     for name in ("signal.signal", "pendu_tui.tui.cli.watchdog.watchdog"):
         monkeypatch.setattr(name, Mock())
-    _try(Mock(send=Mock(side_effect=BrokenPipeError)), "", "mine", "mine.py")
+    results = Mock(send=Mock(side_effect=BrokenPipeError))
+    _try(results, "", "mine", "mine.py")
+    results.send.assert_called_once_with(None)  # and no error came out
 
 
 def test_what_a_method_prints_is_not_among_the_results_and_its_threads_end_with_the_command(

@@ -154,6 +154,13 @@ async def test_the_map_fills_in_and_is_the_engines_and_names_the_swing_on_screen
             assert f"\n{words}Velocity Verlet at h 0.0539 s, 58.1°: held" in pane.text
 
 
+async def test_a_scene_without_a_map_keeps_the_title_of_the_view():
+    scene = SCENES["stiff-slow"]
+    async with view_of("f5", StabilityPane, lambda pane: pane.text, scene) as (_, pane, _):
+        assert "Stability (F5)" in str(pane.border_title)
+        assert "a single angle" in pane.text
+
+
 async def test_enter_starts_with_the_cursors_amplitude_and_step_and_esc_leaves_it():
     async with stability_view() as (pilot, pane, live):
         z, theta = pane.aim(VERLET)
